@@ -1,0 +1,1 @@
+#include "bvh/bvh.h"

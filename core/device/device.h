@@ -1,0 +1,93 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bvh/bvh.h"
+#include "core/scene/scene.h"
+#include "core/shared/stage_params.h"
+#include "core/shared/types.h"
+
+namespace sightline {
+
+/// What a device is, for reports and `sightline devices`.
+struct DeviceInfo {
+  std::string id;        ///< what --device takes: "cpu", "opencl:0"
+  std::string name;      ///< e.g. the OpenCL device's name
+  std::string driver;    ///< version
+  std::string layout;    ///< tree layout and kind of traversal, e.g. "bvh2, packets of 8"
+  std::string unusable;  ///< why it cannot run; empty: it can
+  uint64_t memory_bytes = 0;
+};
+
+/// How a device keeps the set of found triangles. The result is the same.
+enum class SetKind { kAuto, kArray, kHash };
+
+struct DeviceOptions {
+  int threads = 0;                   ///< cpu: 0 = all cores
+  SetKind set = SetKind::kAuto;      ///< kAuto: array unless it would not fit the budget
+  uint64_t memory_budget_bytes = 0;  ///< 0: what the device reports
+  uint32_t work_group_size = 0;      ///< opencl: 0 = the device's own choice
+};
+
+/// Counters of the cell in work, read back after each stage.
+struct DeviceCounters {
+  uint64_t rays = 0;             ///< traced since beginCell
+  uint64_t memory_bytes = 0;     ///< resident on the device now: scene, tree, set, queue, scratch
+};
+
+/// Runs the stages of GVS++ for one view cell at a time, with scene, set and queue resident. Every
+/// implementation generates the same rays from core/shared and gives the same set, bit for bit.
+///
+///   beginCell -> { traceRandom*, collect -> { traceBorder, collect, traceReverse*, collect }* }* -> readPvs
+///
+/// A trace stage inserts the triangles it hits under their ray's index in the batch (1, 2, ...; the lowest
+/// wins). collect closes the batch: it appends the new triangles, in ascending id, to the list.
+/// Not thread-safe. All throw Error.
+class Device {
+ public:
+  virtual ~Device() = default;
+  virtual DeviceInfo info() const = 0;
+
+  /// Empties set, list and counters. faces: 1..6 as of cellFaces.
+  virtual void beginCell(std::span<const Face> faces, const StageParams& params) = 0;
+
+  /// Random rays segment.first_index .. + count from one face.
+  virtual void traceRandom(const RandomSegment& segment) = 0;
+
+  /// Border rays of the list's entries first .. first + count - 1: count * border_rays(params) rays.
+  /// Remembers where the discontinuities are and returns their number.
+  virtual uint32_t traceBorder(uint32_t first, uint32_t count) = 0;
+
+  /// Reverse rays of the discontinuities first .. first + count - 1 of the last traceBorder.
+  virtual void traceReverse(uint32_t first, uint32_t count) = 0;
+
+  /// Closes a batch; returns how many triangles were new. stage: kStage... of the batch.
+  virtual uint32_t collect(uint32_t stage) = 0;
+
+  /// Puts triangles into the set and list without rays (those that the cell contains), in the given order.
+  virtual void insertContained(std::span<const uint32_t> triangles) = 0;
+
+  /// Traces random rays without inserting; returns how many hit a triangle outside the set.
+  virtual uint64_t countMissing(const RandomSegment& segment) = 0;
+
+  virtual DeviceCounters counters() = 0;
+  /// The whole list, in order of discovery.
+  virtual std::vector<PvsEntry> readPvs() = 0;
+
+  /// Nearest hits of any rays: pictures, tests, cross-checks. hits.size() == rays.size().
+  virtual void traceRays(std::span<const Ray> rays, std::span<Hit> hits) = 0;
+};
+
+/// Devices that this machine has, the unusable ones with their reason.
+std::vector<DeviceInfo> listDevices();
+
+/// Makes the device that `name` selects and uploads the scene: "cpu", "opencl", "opencl:INDEX" or
+/// "opencl:PART-OF-NAME". Throws Error that lists what there is.
+std::unique_ptr<Device> makeDevice(const std::string& name, const Scene& scene, const Bvh& bvh,
+                                   const DeviceOptions& options = {});
+
+}  // namespace sightline

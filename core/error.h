@@ -1,0 +1,24 @@
+#pragma once
+#include <stdexcept>
+#include <string>
+
+namespace sightline {
+
+/// Exit codes of the command line (design: 0 done, 1 failed, 2 usage).
+inline constexpr int kExitFailed = 1;
+inline constexpr int kExitUsage = 2;
+
+/// What went wrong, as the one line that the user gets: file, place, what was expected, what to do.
+/// Example: "city.obj:812: vertex index 99 is out of range 1..42".
+class Error : public std::runtime_error {
+ public:
+  explicit Error(const std::string& line, int exit_code = kExitFailed)
+      : std::runtime_error(line), exit_code_(exit_code) {}
+  /// Exit code that the command line returns for it.
+  int exitCode() const { return exit_code_; }
+
+ private:
+  int exit_code_;
+};
+
+}  // namespace sightline

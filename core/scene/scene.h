@@ -1,0 +1,53 @@
+#pragma once
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace sightline {
+
+/// A named run of triangles (OBJ object or group, glTF node's primitive, PLY file).
+struct SceneObject {
+  std::string name;
+  uint32_t first_triangle = 0;
+  uint32_t triangle_count = 0;
+};
+
+/// A static scene: nothing but triangles. A triangle's id is its index in `triangles`, which follows file
+/// order over all meshes and instances. Invariants (kept by loadScene and the generators): at least one
+/// triangle, fewer than 2^32 - 2; every index is in range; every position is finite; the objects' ranges
+/// are ascending, disjoint and cover all triangles.
+struct Scene {
+  std::vector<glm::vec3> positions;   ///< world space, y up by custom; units are the file's
+  std::vector<glm::uvec3> triangles;  ///< indices into positions
+  std::vector<SceneObject> objects;
+  uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
+  uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or non-finite vertex
+  uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND: traced as opaque
+  uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false: traced as two-sided
+};
+
+struct SceneLoadOptions {
+  /// Drop triangles with an index out of range or a non-finite vertex instead of failing.
+  bool repair = false;
+};
+
+/// Loads .obj, .gltf, .glb or .ply (by extension, any case). Throws Error with file and place.
+Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
+
+/// Writes .obj or .glb (by extension) so that loadScene returns the same positions, triangles and objects,
+/// bit for bit. Writes to a temporary name and renames. Throws Error.
+void saveScene(const Scene& scene, const std::filesystem::path& file);
+
+/// Hash of positions and triangles (XXH3, 64 bit): what a PVS depends on.
+uint64_t hashScene(const Scene& scene);
+
+/// Axis-aligned bounds of the vertices that triangles use.
+struct Bounds {
+  glm::vec3 low{0};
+  glm::vec3 high{0};
+};
+Bounds sceneBounds(const Scene& scene);
+
+}  // namespace sightline

@@ -1,0 +1,19 @@
+#include <gtest/gtest.h>
+
+#include "cl_kernels/program_source.h"
+#include "core/shared/stage_params.h"
+
+namespace sightline {
+namespace {
+
+TEST(Layout, StructsInBuffersHaveTheSizesOfAllThreeLanguages) {
+  EXPECT_EQ(sizeof(Ray), 32u);
+  EXPECT_EQ(sizeof(Hit), 8u);
+  EXPECT_EQ(sizeof(Face), 96u);
+  EXPECT_EQ(sizeof(PvsEntry), 32u);
+  EXPECT_EQ(sizeof(StageParams), 48u);
+  EXPECT_EQ(sizeof(RandomSegment), 32u);
+}
+
+}  // namespace
+}  // namespace sightline
