@@ -1,0 +1,38 @@
+#pragma once
+#include <atomic>
+#include <functional>
+
+#include "core/device/device.h"
+#include "core/pvs/pvs.h"
+#include "core/scene/scene.h"
+
+namespace sightline {
+
+/// State of a cell's bake, reported after every device launch (several times a second on a slow device).
+struct BakeProgress {
+  uint32_t iteration = 0;      ///< 1, 2, ...
+  uint32_t stage = 0;          ///< kStage... in work; validation: kStageRandom with validating = true
+  bool validating = false;
+  uint64_t rays = 0;           ///< traced so far, validation included
+  uint64_t pvs_size = 0;
+  uint64_t new_triangles = 0;  ///< in this iteration so far
+  uint64_t queued = 0;         ///< entries still to explore
+  double seconds = 0;          ///< since the cell's start
+  double seconds_left = 0;     ///< estimate for this cell: rays still known to be due (this iteration's random
+                               ///< rays, queued entries, validation); grows when new triangles turn up
+};
+
+/// Told about the bake; called on the caller's thread.
+using ProgressCallback = std::function<void(const BakeProgress&)>;
+
+/// Thrown by bakeCell when *stop became true: nothing of the cell is kept.
+struct Interrupted {};
+
+/// Computes the PVS of one cell by GVS++ (Koch and Wimmer 2021; thesis, algorithms 5.1 and 6.1 to 6.4) on
+/// `device`, which holds `scene`. cell_index numbers the cell in its bake: it enters the random shifts only.
+/// Throws Error, Interrupted.
+CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
+                 const BakeParams& params, const ProgressCallback& progress = {},
+                 const std::atomic<bool>* stop = nullptr);
+
+}  // namespace sightline
