@@ -1,6 +1,75 @@
-#include <cstdio>
+#include <sys/stat.h>
+#include <unistd.h>
 
-int main() {
-  std::fputs("sightline: no command yet\n", stderr);
-  return 2;
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "core/cli/commands.h"
+#include "core/error.h"
+
+namespace sightline {
+namespace {
+
+int fail(const std::string& line, int exit_code) {
+  std::fflush(stdout);
+  std::fprintf(stderr, "sightline: %s\n", line.c_str());
+  return exit_code;
+}
+
+/// The first line of CLI11's message, with the command to ask for help.
+int failUsage(const CLI::App& app, const CLI::ParseError& error) {
+  std::string line = error.what();
+  line = line.substr(0, line.find('\n'));
+  const auto chosen = app.get_subcommands();
+  const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+  return fail(line + " (see: sightline" + command + " --help)", kExitUsage);
+}
+
+int runCommand(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return failUsage(app, error);
+  } catch (const ExitCode& exit_code) {
+    return exit_code.code;
+  } catch (const Error& error) {
+    return fail(error.what(), error.exitCode());
+  } catch (const std::bad_alloc&) {
+    return fail("not enough memory for this; free some, or take a smaller scene", kExitFailed);
+  } catch (const std::exception& error) {
+    return fail(std::string("internal error: ") + error.what(), kExitFailed);
+  }
+}
+
+/// What was printed must have arrived. Into a pipe it can fail only because the reader went away (| head),
+/// which is no failure of ours.
+int flushOutput(int exit_code) {
+  struct stat target = {};
+  const bool pipe =
+      ::fstat(STDOUT_FILENO, &target) == 0 && !S_ISREG(target.st_mode) && !S_ISCHR(target.st_mode);
+  const bool written = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (written || pipe || exit_code != 0) return exit_code;
+  return fail("cannot write to standard output: is the disk full?", kExitFailed);
+}
+
+}  // namespace
+}  // namespace sightline
+
+int main(int argc, char** argv) {
+  using namespace sightline;
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not end a bake
+  CLI::App app("Potentially visible sets of triangle scenes by guided visibility sampling (GVS++)",
+               "sightline");
+  app.set_version_flag("--version", "sightline " SL_VERSION);
+  app.require_subcommand(1);
+  app.get_formatter()->column_width(34);
+#define SL_COMMAND(function) function(app);
+#include "generated/commands.inc"
+#undef SL_COMMAND
+  return flushOutput(runCommand(app, argc, argv));
 }
