@@ -7,41 +7,45 @@
 
 namespace sightline {
 
+/// No tree has more inner nodes on a path of nodes2 than this, whatever the input: a traversal that keeps
+/// one entry a level needs a stack of kMaxDepth entries for nodes2 and of 7 * kMaxDepth for nodes8.
+inline constexpr uint32_t kMaxDepth = 96;
+
 /// How to build. The defaults suit triangle soups from 1 to 20 million triangles.
 struct BvhConfig {
-  uint32_t max_leaf_size = 4;      ///< references in a leaf, 1..8
-  bool spatial_splits = false;     ///< Stich et al. 2009: up to 30 % more references, fewer box tests
-  float split_budget = 0.3f;       ///< additional references that spatial splits may make, as a share
-  int threads = 0;                 ///< 0: all cores. The tree does not depend on it.
+  uint32_t max_leaf_size = 4;   ///< references in a leaf, 1..8
+  bool spatial_splits = false;  ///< Stich et al. 2009: up to 30 % more references, fewer box tests
+  float split_budget = 0.3f;    ///< additional references that spatial splits may make, as a share
+  int threads = 0;              ///< 0: all cores. The tree does not depend on it.
 };
 
 /// Two children a node, with their boxes: for packets of rays and for GPUs. 64 bytes.
 struct BvhNode2 {
-  glm::vec4 x;            ///< low and high of child 0, low and high of child 1
+  glm::vec4 x;  ///< low and high of child 0, low and high of child 1
   glm::vec4 y;
   glm::vec4 z;
-  uint32_t child[2];      ///< inner: index of the node; leaf: index of the first reference
-  uint32_t count[2];      ///< references in the leaf; 0: an inner node
+  uint32_t child[2];  ///< inner: index of the node; leaf: index of the first reference
+  uint32_t count[2];  ///< references in the leaf; 0: an inner node
 };
 static_assert(sizeof(BvhNode2) == 64);
 
 /// Eight children a node, bounds as structure of arrays: for single rays on SIMD CPUs. 256 bytes.
 struct BvhNode8 {
   float low_x[8], high_x[8], low_y[8], high_y[8], low_z[8], high_z[8];  ///< empty slot: low > high
-  uint32_t child[8];      ///< as in BvhNode2
-  uint32_t count[8];      ///< as in BvhNode2; an empty slot has count 0 and child 0xffffffff
+  uint32_t child[8];                                                    ///< as in BvhNode2
+  uint32_t count[8];  ///< as in BvhNode2; an empty slot has count 0 and child 0xffffffff
 };
 static_assert(sizeof(BvhNode8) == 256);
 
 /// A bounding volume hierarchy over triangles. Every node's box contains the boxes of its references,
 /// without padding; conservative rounding is the traversal's task (core/shared/box.h).
 struct Bvh {
-  std::vector<BvhNode2> nodes2;       ///< root at 0; a scene of one leaf has child[1] empty (low > high)
-  std::vector<BvhNode8> nodes8;       ///< the same tree collapsed; same leaves
-  std::vector<uint32_t> references;   ///< triangle ids in leaf order; an id may occur several times
-  glm::vec3 low{0}, high{0};          ///< bounds of everything
-  double sah_cost = 0;                ///< surface area heuristic: node cost 1, triangle cost 1
-  uint32_t depth = 0;                 ///< inner nodes on the longest path of nodes2
+  std::vector<BvhNode2> nodes2;      ///< root at 0; a scene of one leaf has child[1] empty (low > high)
+  std::vector<BvhNode8> nodes8;      ///< the same tree collapsed; same leaves
+  std::vector<uint32_t> references;  ///< triangle ids in leaf order; an id may occur several times
+  glm::vec3 low{0}, high{0};         ///< bounds of everything
+  double sah_cost = 0;               ///< surface area heuristic: node cost 1, triangle cost 1
+  uint32_t depth = 0;                ///< inner nodes on the longest path of nodes2
   double build_seconds = 0;
 };
 

@@ -1,1 +1,0 @@
-#include "bvh/bvh.h"
