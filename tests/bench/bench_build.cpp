@@ -1,0 +1,224 @@
+// How long the tree takes to build, next to Embree's medium-quality build of the same triangles in the same
+// run, taken in turns, and what the tree is like.
+//
+//   bench_build [--triangles N] [--runs N] [--threads N] [--scene city|soup] [--plain]
+#include <fmt/core.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "bvh/bvh.h"
+#ifdef SL_HAVE_EMBREE
+#include <embree3/rtcore.h>
+#endif
+
+namespace sightline {
+namespace {
+
+struct Mesh {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::uvec3> triangles;
+};
+
+struct Options {
+  uint32_t triangles = 2'000'000;
+  int runs = 5;
+  int threads = 0;
+  bool plain = false;
+  std::string scene = "city";
+};
+
+void addBox(Mesh& mesh, glm::vec3 low, glm::vec3 high) {
+  static constexpr uint32_t kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                            {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  const uint32_t n = static_cast<uint32_t>(mesh.positions.size());
+  for (int i = 0; i < 8; ++i) {
+    mesh.positions.emplace_back(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
+  }
+  for (const auto& q : kQuads) {
+    mesh.triangles.emplace_back(n + q[0], n + q[1], n + q[2]);
+    mesh.triangles.emplace_back(n + q[0], n + q[2], n + q[3]);
+  }
+}
+
+/// Streets of houses with window frames on all four walls; a ground of two large triangles.
+Mesh makeCity(uint32_t triangles) {
+  Mesh mesh;
+  std::mt19937 random(1);
+  const auto uniform = [&](float a, float b) {
+    return a + (b - a) * static_cast<float>(random() >> 8) * 0x1p-24f;
+  };
+  const uint32_t side = static_cast<uint32_t>(std::sqrt(triangles / 12.0 / 180.0)) + 1;
+  addBox(mesh, {-10, -1, -10},
+         {20.0f * static_cast<float>(side) + 10, 0, 20.0f * static_cast<float>(side) + 10});
+  for (uint32_t house = 0; mesh.triangles.size() < triangles; ++house) {
+    const glm::vec3 at(20.0f * static_cast<float>(house % side), 0, 20.0f * static_cast<float>(house / side));
+    const glm::vec3 size(uniform(8, 14), uniform(9, 50), uniform(8, 14));
+    addBox(mesh, at, at + size);
+    for (float y = 1; y < size.y - 2; y += 3) {
+      for (float u = 1; u < size.x - 2; u += 2.5f) {
+        addBox(mesh, at + glm::vec3(u, y, -0.2f), at + glm::vec3(u + 1.2f, y + 1.6f, 0.1f));
+        addBox(mesh, at + glm::vec3(u, y, size.z), at + glm::vec3(u + 1.2f, y + 1.6f, size.z + 0.2f));
+      }
+      for (float u = 1; u < size.z - 2; u += 2.5f) {
+        addBox(mesh, at + glm::vec3(-0.2f, y, u), at + glm::vec3(0.1f, y + 1.6f, u + 1.2f));
+        addBox(mesh, at + glm::vec3(size.x, y, u), at + glm::vec3(size.x + 0.2f, y + 1.6f, u + 1.2f));
+      }
+    }
+  }
+  mesh.triangles.resize(triangles);
+  return mesh;
+}
+
+/// Small triangles anywhere, nothing shared: three positions a triangle.
+Mesh makeSoup(uint32_t triangles) {
+  Mesh mesh;
+  mesh.positions.reserve(size_t{3} * triangles);
+  mesh.triangles.reserve(triangles);
+  std::mt19937 random(1);
+  const auto uniform = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
+  const auto point = [&] { return glm::vec3(uniform(), uniform(), uniform()); };
+  for (uint32_t i = 0; i < triangles; ++i) {
+    const glm::vec3 p = point();
+    mesh.positions.push_back(p);
+    mesh.positions.push_back(p + 0.01f * point());
+    mesh.positions.push_back(p + 0.01f * point());
+    mesh.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  return mesh;
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+#ifdef SL_HAVE_EMBREE
+/// Seconds that Embree takes to commit a scene with the triangles, ready in its own buffers.
+double embreeSeconds(const Mesh& mesh, RTCDevice device) {
+  RTCScene scene = rtcNewScene(device);
+  rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+  rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  void* v = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(glm::vec3),
+                                    mesh.positions.size());
+  std::memcpy(v, mesh.positions.data(), mesh.positions.size() * sizeof(glm::vec3));
+  void* t = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
+                                    mesh.triangles.size());
+  std::memcpy(t, mesh.triangles.data(), mesh.triangles.size() * sizeof(glm::uvec3));
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometry(scene, geometry);
+  rtcReleaseGeometry(geometry);
+  const auto start = std::chrono::steady_clock::now();
+  rtcCommitScene(scene);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  rtcReleaseScene(scene);
+  return seconds;
+}
+#endif
+
+/// Most memory that this process has used so far, in MiB.
+double peakMemory() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.rfind("VmHWM:", 0) == 0) return std::strtod(line.c_str() + 6, nullptr) / 1024;
+  }
+  return 0;
+}
+
+struct Row {
+  std::string name;
+  std::vector<double> seconds;
+  Bvh bvh;
+};
+
+void print(const Row& row, double embree, size_t triangles) {
+  const Bvh& b = row.bvh;
+  const double n = static_cast<double>(triangles);
+  const double n2 = static_cast<double>(b.nodes2.size()) * sizeof(BvhNode2) / n;
+  const double n8 = static_cast<double>(b.nodes8.size()) * sizeof(BvhNode8) / n;
+  const double references = static_cast<double>(b.references.size()) / n;
+  const auto [low, high] = std::minmax_element(row.seconds.begin(), row.seconds.end());
+  fmt::print(
+      "{:<16} {:>8.3f} {:>6.3f}..{:<6.3f} {:>6.2f} {:>8.2f} {:>6} {:>6.2f} {:>7.1f} {:>7.1f} {:>7.1f}\n",
+      row.name, median(row.seconds), *low, *high, embree > 0 ? median(row.seconds) / embree : 0.0, b.sah_cost,
+      b.depth, references, n2, n8, n2 + n8 + 44 * references);
+}
+
+void run(const Options& options) {
+  const Mesh mesh = options.scene == "soup" ? makeSoup(options.triangles) : makeCity(options.triangles);
+  const double scene_memory = peakMemory();
+  const int threads = options.threads ? options.threads : tbb::info::default_concurrency();
+  tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+  std::vector<Row> rows{{"plain", {}, {}}};
+  if (!options.plain) rows.push_back({"spatial splits", {}, {}});
+  std::vector<double> embree;
+#ifdef SL_HAVE_EMBREE
+  RTCDevice device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
+#endif
+  for (int i = 0; i < options.runs + 1; ++i) {  // the first run warms up
+    for (Row& row : rows) {
+      BvhConfig config;
+      config.threads = threads;
+      config.spatial_splits = row.name != "plain";
+      row.bvh = {};
+      row.bvh = buildBvh(mesh.positions, mesh.triangles, config);
+      if (i > 0 || options.runs == 0) row.seconds.push_back(row.bvh.build_seconds);
+    }
+#ifdef SL_HAVE_EMBREE
+    if (i > 0) embree.push_back(embreeSeconds(mesh, device));
+#endif
+  }
+#ifdef SL_HAVE_EMBREE
+  rtcReleaseDevice(device);
+#endif
+  const double peer = embree.empty() ? 0 : median(embree);
+  fmt::print(
+      "{} of {} triangles, {} threads, median of {}; bytes a triangle; scene {:.0f} MiB, peak {:.0f} MiB\n",
+      options.scene, mesh.triangles.size(), threads, options.runs, scene_memory, peakMemory());
+  fmt::print("{:<16} {:>8} {:>14} {:>6} {:>8} {:>6} {:>6} {:>7} {:>7} {:>7}\n", "build", "seconds", "spread",
+             "ratio", "SAH", "depth", "refs", "nodes2", "nodes8", "in all");
+  if (peer > 0) fmt::print("{:<16} {:>8.3f}\n", "Embree medium", peer);
+  for (const Row& row : rows) {
+    print(row, peer, mesh.triangles.size());
+    const std::string error = validate(row.bvh, mesh.positions, mesh.triangles);
+    if (!error.empty()) fmt::print("NOT VALID: {}\n", error);
+  }
+}
+
+}  // namespace
+}  // namespace sightline
+
+int main(int argc, char** argv) {
+  sightline::Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string key = argv[i];
+    const auto value = [&] { return i + 1 < argc ? argv[++i] : ""; };
+    if (key == "--triangles") {
+      options.triangles = static_cast<uint32_t>(std::max(1ul, std::strtoul(value(), nullptr, 10)));
+    } else if (key == "--runs") {
+      options.runs = std::atoi(value());
+    } else if (key == "--threads") {
+      options.threads = std::atoi(value());
+    } else if (key == "--scene") {
+      options.scene = value();
+    } else if (key == "--plain") {
+      options.plain = true;
+    } else {
+      fmt::print(
+          stderr,
+          "usage: bench_build [--triangles N] [--runs N] [--threads N] [--scene city|soup] [--plain]\n");
+      return 2;
+    }
+  }
+  sightline::run(options);
+  return 0;
+}
