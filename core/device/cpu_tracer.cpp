@@ -1,0 +1,114 @@
+#include "core/device/cpu_tracer.h"
+
+#include "core/shared/box.h"
+#include "core/shared/triangle.h"
+
+namespace sightline {
+namespace {
+
+/// Eight floats at once: GCC and Clang turn it into whatever vector registers the processor has.
+using Float8 = float __attribute__((vector_size(32)));
+
+/// A subtree still to visit.
+struct StackEntry {
+  uint32_t child;
+  uint32_t count;
+  float near_t;
+};
+
+/// Each node on a path leaves at most seven siblings behind.
+constexpr uint32_t kStackSize = 7 * kMaxTraceDepth + 8;
+
+/// The planes of a node's eight boxes that the ray meets first and last, by the sign of its direction.
+struct PlaneOffsets {
+  int near_x, far_x, near_y, far_y, near_z, far_z;  ///< rows of eight floats from the node's start
+};
+
+PlaneOffsets planeOffsets(const BoxRay& ray) {
+  const int x = ray.inverse.x < 0, y = ray.inverse.y < 0, z = ray.inverse.z < 0;
+  return {x, 1 - x, 2 + y, 3 - y, 4 + z, 5 - z};
+}
+
+struct Children {
+  float near_t[8];
+  float far_t[8];
+};
+
+inline void intersectChildren(const BvhNode8& node, const BoxRay& ray, const PlaneOffsets& rows, float best,
+                              Children& out) {
+  const float* planes = node.low_x;
+  auto distances = [&](int row, float inverse, float addend) {
+    Float8 plane;
+    __builtin_memcpy(&plane, planes + 8 * row, sizeof plane);
+    return plane * inverse + addend;
+  };
+  auto larger = [](Float8 a, Float8 b) { return a > b ? a : b; };
+  auto smaller = [](Float8 a, Float8 b) { return a < b ? a : b; };
+  const Float8 near_x = distances(rows.near_x, ray.inverse.x, ray.near_addend.x);
+  const Float8 near_y = distances(rows.near_y, ray.inverse.y, ray.near_addend.y);
+  const Float8 near_z = distances(rows.near_z, ray.inverse.z, ray.near_addend.z);
+  const Float8 far_x = distances(rows.far_x, ray.inverse.x, ray.far_addend.x);
+  const Float8 far_y = distances(rows.far_y, ray.inverse.y, ray.far_addend.y);
+  const Float8 far_z = distances(rows.far_z, ray.inverse.z, ray.far_addend.z);
+  const Float8 near_t = larger(larger(near_x, near_y), larger(near_z, Float8{}));
+  const Float8 far_t = smaller(smaller(far_x, far_y), smaller(far_z, Float8{} + best));
+  __builtin_memcpy(out.near_t, &near_t, sizeof near_t);
+  __builtin_memcpy(out.far_t, &far_t, sizeof far_t);
+}
+
+inline void keepNearer(float t, uint32_t id, Hit& best) {
+  if (t > 0 && (t < best.t || (t == best.t && id < best.triangle))) best = {t, id};
+}
+
+}  // namespace
+
+CpuTracer::CpuTracer(const Scene& scene, const Bvh& bvh) : bvh_(bvh), triangles_(bvh.references.size()) {
+  checkTraceable(bvh);
+  packTriangles(scene, bvh, 0, std::span<TriangleRecord>(triangles_));
+  scene_reach_ = sceneReach(bvh.low, bvh.high);
+}
+
+CpuTracer::CpuTracer(std::vector<TriangleRecord> triangles, const Bvh& bvh)
+    : bvh_(bvh), triangles_(std::move(triangles)), scene_reach_(sceneReach(bvh.low, bvh.high)) {
+  checkTraceable(bvh);
+}
+
+Hit CpuTracer::trace(const Ray& ray) const {
+  Hit best{INFINITY, kNoTriangle};
+  if (ray.direction.x == 0 && ray.direction.y == 0 && ray.direction.z == 0) return best;
+  const BoxRay box_ray = boxRay(ray, scene_reach_);
+  const ShearedRay sheared = shearRay(ray);
+  const PlaneOffsets rows = planeOffsets(box_ray);
+  StackEntry stack[kStackSize];
+  uint32_t size = 0;
+  stack[size++] = {0, 0, 0};
+  while (size > 0) {
+    const StackEntry entry = stack[--size];
+    if (entry.near_t > best.t) continue;
+    for (uint32_t i = entry.child; i < entry.child + entry.count; ++i) {
+      const float* v = triangles_[i].vertices;
+      keepNearer(intersectTriangle(sheared, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}),
+                 triangles_[i].id, best);
+    }
+    if (entry.count > 0) continue;
+    const BvhNode8& node = bvh_.nodes8[entry.child];
+    Children children;
+    intersectChildren(node, box_ray, rows, best.t, children);
+    const uint32_t bottom = size;
+    for (int i = 0; i < 8; ++i) {
+      if (!(children.near_t[i] <= children.far_t[i])) continue;
+      uint32_t place = size++;  // the farthest deepest in the stack
+      for (; place > bottom && stack[place - 1].near_t < children.near_t[i]; --place) {
+        stack[place] = stack[place - 1];
+      }
+      stack[place] = {node.child[i], node.count[i], children.near_t[i]};
+    }
+  }
+  return best;
+}
+
+void CpuTracer::tracePacket(const Ray* rays, Hit* hits, int count) const {
+  for (int i = 0; i < count; ++i) hits[i] = trace(rays[i]);
+}
+
+}  // namespace sightline

@@ -1,0 +1,37 @@
+#pragma once
+#include <vector>
+
+#include "bvh/bvh.h"
+#include "core/device/trace_layout.h"
+#include "core/scene/scene.h"
+#include "core/shared/types.h"
+
+namespace sightline {
+
+/// Nearest hits in plain C++: the reference for every other tracer, and the whole of tracing where there is
+/// no OpenCL. Thread-safe after construction.
+class CpuTracer {
+ public:
+  /// Copies the triangles; refers to the tree, which must outlive the tracer. Throws Error if the tree is
+  /// too deep to trace.
+  CpuTracer(const Scene& scene, const Bvh& bvh);
+
+  /// The same from triangles already packed, in the order of bvh.references.
+  CpuTracer(std::vector<TriangleRecord> triangles, const Bvh& bvh);
+
+  /// Smallest t, among equal t the lowest id. A direction of zero hits nothing.
+  Hit trace(const Ray& ray) const;
+
+  /// hits[i] = trace(rays[i]), faster where rays next to each other go the same way.
+  void tracePacket(const Ray* rays, Hit* hits, int count) const;
+
+  /// Bytes that the tracer added to those of the tree.
+  uint64_t memoryBytes() const { return triangles_.size() * sizeof(TriangleRecord); }
+
+ private:
+  const Bvh& bvh_;
+  std::vector<TriangleRecord> triangles_;
+  float scene_reach_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,57 @@
+#include "core/device/trace_layout.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <bit>
+
+#include "core/error.h"
+
+namespace sightline {
+namespace {
+
+void pack(const glm::vec3 (&vertices)[3], uint32_t id, TriangleRecord& record) {
+  for (int i = 0; i < 3; ++i) {
+    for (int axis = 0; axis < 3; ++axis) record.vertices[3 * i + axis] = vertices[i][axis];
+  }
+  record.id = id;
+}
+
+void pack(const glm::vec3 (&vertices)[3], uint32_t id, TriangleRecordGpu& record) {
+  for (int i = 0; i < 3; ++i) {
+    for (int axis = 0; axis < 3; ++axis) record.vertices[i][axis] = vertices[i][axis];
+    record.vertices[i][3] = i == 0 ? std::bit_cast<float>(id) : 0.0f;
+  }
+}
+
+template <typename Record>
+void packAll(const Scene& scene, const Bvh& bvh, size_t first, std::span<Record> out) {
+  tbb::parallel_for(size_t{0}, out.size(), [&](size_t i) {
+    const uint32_t id = bvh.references[first + i];
+    const glm::uvec3 corners = scene.triangles[id];
+    const glm::vec3 vertices[3] = {scene.positions[corners.x], scene.positions[corners.y],
+                                   scene.positions[corners.z]};
+    pack(vertices, id, out[i]);
+  });
+}
+
+}  // namespace
+
+void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecord> out) {
+  packAll(scene, bvh, first, out);
+}
+
+void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecordGpu> out) {
+  packAll(scene, bvh, first, out);
+}
+
+void checkTraceable(const Bvh& bvh) {
+  if (bvh.nodes2.empty() || bvh.nodes8.empty()) {
+    throw Error("the tree has no nodes: build it with buildBvh from at least one triangle");
+  }
+  if (bvh.depth > kMaxTraceDepth) {
+    throw Error(fmt::format("the tree is {} nodes deep, tracing takes {} at most", bvh.depth, kMaxTraceDepth));
+  }
+}
+
+}  // namespace sightline

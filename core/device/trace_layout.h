@@ -1,0 +1,36 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bvh/bvh.h"
+#include "core/scene/scene.h"
+
+namespace sightline {
+
+/// Deepest tree that the traversals' stacks hold: inner nodes on a path of Bvh::nodes2.
+inline constexpr uint32_t kMaxTraceDepth = 96;
+
+/// A triangle as leaves read it, in the order of Bvh::references. 40 bytes, no padding: for CPUs, where the
+/// size of the scene in the cache decides.
+struct TriangleRecord {
+  float vertices[9];  ///< x, y, z of the three vertices
+  uint32_t id;        ///< in file order
+};
+static_assert(sizeof(TriangleRecord) == 40);
+
+/// The same in three 16-byte loads: for GPUs. 48 bytes.
+struct TriangleRecordGpu {
+  float vertices[3][4];  ///< x, y, z; the fourth of the first vertex holds the bits of the id
+};
+static_assert(sizeof(TriangleRecordGpu) == 48);
+
+/// Records of the references bvh.references[first ... first + count).
+/// out has room for all of them; ranges let big scenes be uploaded piece by piece.
+void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecord> out);
+void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecordGpu> out);
+
+/// Throws Error if the tree is deeper than kMaxTraceDepth or has no nodes: a traversal's stack would overflow.
+void checkTraceable(const Bvh& bvh);
+
+}  // namespace sightline
