@@ -6,9 +6,6 @@
 namespace sightline {
 namespace {
 
-/// Eight floats at once: GCC and Clang turn it into whatever vector registers the processor has.
-using Float8 = float __attribute__((vector_size(32)));
-
 /// A subtree still to visit.
 struct StackEntry {
   uint32_t child;
@@ -17,7 +14,7 @@ struct StackEntry {
 };
 
 /// Each node on a path leaves at most seven siblings behind.
-constexpr uint32_t kStackSize = 7 * kMaxTraceDepth + 8;
+constexpr uint32_t kStackSize = 7 * kMaxDepth + 8;
 
 /// The planes of a node's eight boxes that the ray meets first and last, by the sign of its direction.
 struct PlaneOffsets {
@@ -34,26 +31,23 @@ struct Children {
   float far_t[8];
 };
 
+/// Plain loops of eight: the compiler makes vector instructions of them.
 inline void intersectChildren(const BvhNode8& node, const BoxRay& ray, const PlaneOffsets& rows, float best,
                               Children& out) {
   const float* planes = node.low_x;
-  auto distances = [&](int row, float inverse, float addend) {
-    Float8 plane;
-    __builtin_memcpy(&plane, planes + 8 * row, sizeof plane);
-    return plane * inverse + addend;
-  };
-  auto larger = [](Float8 a, Float8 b) { return a > b ? a : b; };
-  auto smaller = [](Float8 a, Float8 b) { return a < b ? a : b; };
-  const Float8 near_x = distances(rows.near_x, ray.inverse.x, ray.near_addend.x);
-  const Float8 near_y = distances(rows.near_y, ray.inverse.y, ray.near_addend.y);
-  const Float8 near_z = distances(rows.near_z, ray.inverse.z, ray.near_addend.z);
-  const Float8 far_x = distances(rows.far_x, ray.inverse.x, ray.far_addend.x);
-  const Float8 far_y = distances(rows.far_y, ray.inverse.y, ray.far_addend.y);
-  const Float8 far_z = distances(rows.far_z, ray.inverse.z, ray.far_addend.z);
-  const Float8 near_t = larger(larger(near_x, near_y), larger(near_z, Float8{}));
-  const Float8 far_t = smaller(smaller(far_x, far_y), smaller(far_z, Float8{} + best));
-  __builtin_memcpy(out.near_t, &near_t, sizeof near_t);
-  __builtin_memcpy(out.far_t, &far_t, sizeof far_t);
+  const float *near_x = planes + 8 * rows.near_x, *far_x = planes + 8 * rows.far_x;
+  const float *near_y = planes + 8 * rows.near_y, *far_y = planes + 8 * rows.far_y;
+  const float *near_z = planes + 8 * rows.near_z, *far_z = planes + 8 * rows.far_z;
+  auto larger = [](float a, float b) { return a > b ? a : b; };
+  auto smaller = [](float a, float b) { return a < b ? a : b; };
+  for (int i = 0; i < 8; ++i) {
+    out.near_t[i] = larger(
+        larger(near_x[i] * ray.inverse.x + ray.near_addend.x, near_y[i] * ray.inverse.y + ray.near_addend.y),
+        larger(near_z[i] * ray.inverse.z + ray.near_addend.z, 0.0f));
+    out.far_t[i] = smaller(
+        smaller(far_x[i] * ray.inverse.x + ray.far_addend.x, far_y[i] * ray.inverse.y + ray.far_addend.y),
+        smaller(far_z[i] * ray.inverse.z + ray.far_addend.z, best));
+  }
 }
 
 inline void keepNearer(float t, uint32_t id, Hit& best) {

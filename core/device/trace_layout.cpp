@@ -49,8 +49,8 @@ void checkTraceable(const Bvh& bvh) {
   if (bvh.nodes2.empty() || bvh.nodes8.empty()) {
     throw Error("the tree has no nodes: build it with buildBvh from at least one triangle");
   }
-  if (bvh.depth > kMaxTraceDepth) {
-    throw Error(fmt::format("the tree is {} nodes deep, tracing takes {} at most", bvh.depth, kMaxTraceDepth));
+  if (bvh.depth > kMaxDepth) {
+    throw Error(fmt::format("the tree is {} nodes deep, tracing takes {} at most", bvh.depth, kMaxDepth));
   }
 }
 

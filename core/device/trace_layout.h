@@ -8,9 +8,6 @@
 
 namespace sightline {
 
-/// Deepest tree that the traversals' stacks hold: inner nodes on a path of Bvh::nodes2.
-inline constexpr uint32_t kMaxTraceDepth = 96;
-
 /// A triangle as leaves read it, in the order of Bvh::references. 40 bytes, no padding: for CPUs, where the
 /// size of the scene in the cache decides.
 struct TriangleRecord {
@@ -30,7 +27,7 @@ static_assert(sizeof(TriangleRecordGpu) == 48);
 void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecord> out);
 void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecordGpu> out);
 
-/// Throws Error if the tree is deeper than kMaxTraceDepth or has no nodes: a traversal's stack would overflow.
+/// Throws Error if the tree is deeper than kMaxDepth or has no nodes: a traversal's stack would overflow.
 void checkTraceable(const Bvh& bvh);
 
 }  // namespace sightline
