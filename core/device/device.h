@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -35,8 +34,8 @@ struct DeviceOptions {
 
 /// Counters of the cell in work, read back after each stage.
 struct DeviceCounters {
-  uint64_t rays = 0;             ///< traced since beginCell
-  uint64_t memory_bytes = 0;     ///< resident on the device now: scene, tree, set, queue, scratch
+  uint64_t rays = 0;          ///< traced since beginCell
+  uint64_t memory_bytes = 0;  ///< resident on the device now: scene, tree, set, queue, scratch
 };
 
 /// Runs the stages of GVS++ for one view cell at a time, with scene, set and queue resident. Every
@@ -55,7 +54,8 @@ class Device {
   /// Empties set, list and counters. faces: 1..6 as of cellFaces.
   virtual void beginCell(std::span<const Face> faces, const StageParams& params) = 0;
 
-  /// Random rays segment.first_index .. + count from one face.
+  /// Random rays of one segment (makeRandomSegment). Several segments may share a batch; their ray indices
+  /// must not overlap.
   virtual void traceRandom(const RandomSegment& segment) = 0;
 
   /// Border rays of the list's entries first .. first + count - 1: count * border_rays(params) rays.
@@ -71,8 +71,9 @@ class Device {
   /// Puts triangles into the set and list without rays (those that the cell contains), in the given order.
   virtual void insertContained(std::span<const uint32_t> triangles) = 0;
 
-  /// Traces random rays without inserting; returns how many hit a triangle outside the set.
-  virtual uint64_t countMissing(const RandomSegment& segment) = 0;
+  /// Traces random rays with other shifts than the cell's, without inserting; returns how many hit a triangle
+  /// outside the set.
+  virtual uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) = 0;
 
   virtual DeviceCounters counters() = 0;
   /// The whole list, in order of discovery.

@@ -10,16 +10,16 @@ namespace sightline {
 
 /// State of a cell's bake, reported after every device launch (several times a second on a slow device).
 struct BakeProgress {
-  uint32_t iteration = 0;      ///< 1, 2, ...
-  uint32_t stage = 0;          ///< kStage... in work; validation: kStageRandom with validating = true
+  uint32_t iteration = 0;  ///< 1, 2, ...
+  uint32_t stage = 0;      ///< kStage... in work; validation: kStageRandom with validating = true
   bool validating = false;
-  uint64_t rays = 0;           ///< traced so far, validation included
+  uint64_t rays = 0;  ///< traced so far, validation included
   uint64_t pvs_size = 0;
   uint64_t new_triangles = 0;  ///< in this iteration so far
   uint64_t queued = 0;         ///< entries still to explore
   double seconds = 0;          ///< since the cell's start
-  double seconds_left = 0;     ///< estimate for this cell: rays still known to be due (this iteration's random
-                               ///< rays, queued entries, validation); grows when new triangles turn up
+  double seconds_left = 0;  ///< estimate for this cell: rays still known to be due (this iteration's random
+                            ///< rays, queued entries, validation); grows when new triangles turn up
 };
 
 /// Told about the bake; called on the caller's thread.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scene/scene.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/types.h"
 
@@ -12,19 +13,19 @@ namespace sightline {
 /// Parameters of a bake that decide its result (thesis 6.2.2, with its names). Same scene, cells, seed and
 /// parameters: same sets, bit for bit.
 struct BakeParams {
-  uint32_t n_rand = 10'000'000;       ///< random rays an iteration, 1 .. 2^32 - 3
-  uint32_t n_abs_edge = 20;           ///< samples along each long edge of the border polygon, 0..1000
-  uint32_t n_rs_edge = 20;            ///< samples along each edge of the view cell's faces, 0..1000
-  uint32_t n_rs_area = 20;            ///< samples on the view cell's faces, 0..100000
+  uint32_t n_rand = 10'000'000;         ///< random rays an iteration, 1 .. 2^32 - 3
+  uint32_t n_abs_edge = 20;             ///< samples along each long edge of the border polygon, 0..1000
+  uint32_t n_rs_edge = 20;              ///< samples along each edge of the view cell's faces, 0..1000
+  uint32_t n_rs_area = 20;              ///< samples on the view cell's faces, 0..100000
   float delta_abs_relative = 0x1p-17f;  ///< border distance, share of the distance from the ray's origin
-  float delta_abs = 0;                ///< border distance in world units (thesis: 0.001), added
-  float delta_rs_relative = 0x1p-10f; ///< discontinuity threshold, share of the distance
-  float delta_rs = 0;                 ///< discontinuity threshold in world units, added
-  uint32_t threshold = 10;            ///< T: stop after fewer new triangles in an iteration ...
-  uint32_t quiet_iterations = 1;      ///< ... in this many iterations one after the other
-  uint64_t max_rays = 0;              ///< stop a cell after so many rays (0: no limit)
-  double max_seconds = 0;             ///< stop a cell after so many seconds (0: no limit; not deterministic)
-  uint32_t batch_rays = 1u << 22;     ///< rays of a border or reverse batch at most, 4096 or more
+  float delta_abs = 0;                  ///< border distance in world units (thesis: 0.001), added
+  float delta_rs_relative = 0x1p-10f;   ///< discontinuity threshold, share of the distance
+  float delta_rs = 0;                   ///< discontinuity threshold in world units, added
+  uint32_t threshold = 10;              ///< T: stop after fewer new triangles in an iteration ...
+  uint32_t quiet_iterations = 1;        ///< ... in this many iterations one after the other
+  uint64_t max_rays = 0;                ///< stop a cell after so many rays (0: no limit)
+  double max_seconds = 0;          ///< stop a cell after so many seconds (0: no limit; not deterministic)
+  uint32_t batch_rays = 1u << 22;  ///< rays of a border or reverse batch at most, 4096 or more
   uint64_t validation_rays = 10'000'000;  ///< fresh random rays after each cell that measure the miss rate
   uint64_t seed = 1;
   bool operator==(const BakeParams&) const = default;
@@ -46,9 +47,9 @@ struct CellStats {
   uint64_t contained_triangles = 0;  ///< in the set because they meet the cell itself
   uint32_t iterations = 0;
   StopReason stop = StopReason::kConverged;
-  uint64_t validation_rays = 0;      ///< fresh random rays
-  uint64_t missing_rays = 0;         ///< of them: hit a triangle outside the set
-  double seconds = 0;                ///< whole cell, validation included
+  uint64_t validation_rays = 0;  ///< fresh random rays
+  uint64_t missing_rays = 0;     ///< of them: hit a triangle outside the set
+  double seconds = 0;            ///< whole cell, validation included
   uint64_t peak_device_bytes = 0;
 };
 
@@ -73,12 +74,13 @@ struct CellPvs {
 /// All of a .pvs file (docs/pvs-format.md).
 struct PvsFile {
   uint64_t scene_hash = 0;
-  uint32_t triangle_count = 0;      ///< of the scene
-  std::string scene_name;           ///< file name without folder, for people
-  std::string device;               ///< DeviceInfo::id and name
+  uint32_t triangle_count = 0;  ///< of the scene
+  std::string scene_name;       ///< file name without folder, for people
+  std::string device;           ///< DeviceInfo::id and name
   BakeParams params;
-  std::vector<ViewCell> planned;    ///< all cells of the bake, in order; cells holds the first of them
-  std::vector<CellPvs> cells;       ///< baked so far; complete when as many as planned
+  bool has_witnesses = false;     ///< every cell has one witness a triangle
+  std::vector<ViewCell> planned;  ///< all cells of the bake, in order; cells holds the first of them
+  std::vector<CellPvs> cells;     ///< baked so far; complete when as many as planned
 };
 
 /// Reads and checks everything: magic, version, sizes, checksums, ids in range and ascending. Throws Error
@@ -87,5 +89,11 @@ PvsFile loadPvs(const std::filesystem::path& file);
 
 /// Writes to a temporary name beside it, flushes to disk and renames. Throws Error.
 void savePvs(const PvsFile& pvs, const std::filesystem::path& file);
+
+/// Throws Error unless `pvs`, read from `file`, was baked of this scene (hash and number of triangles).
+void requireScene(const PvsFile& pvs, const Scene& scene, const std::filesystem::path& file);
+
+/// XXH3 of the sets alone: equal for two bakes that found the same, whatever the device and the time taken.
+uint64_t hashResult(const PvsFile& pvs);
 
 }  // namespace sightline

@@ -26,7 +26,7 @@ typedef ulong uint64;
 #define vec3(x, y, z) ((float3)((x), (y), (z)))
 #define vec4(x, y, z, w) ((float4)((x), (y), (z), (w)))
 #define uvec4(x, y, z, w) ((uint4)((x), (y), (z), (w)))
-#define SL_STRUCT(S)   \
+#define SL_STRUCT(S)  \
   typedef struct S S; \
   struct S
 #define SL_FUNC static inline
@@ -34,10 +34,29 @@ typedef ulong uint64;
 #define floatBitsToUint as_uint
 #define uintBitsToFloat as_float
 #define slMulHigh(a, b) mul_hi((uint)(a), (uint)(b))
+#define SL_SET_PARAM SetRef sl_set
+#define SL_SET sl_set
+#define SL_SET_CAPACITY sl_set.capacity
+#define SL_SET_LOAD(field, i) (sl_set.field[i])
+#define SL_SET_CAS(field, i, expected, desired) atomic_cmpxchg(&sl_set.field[i], (expected), (desired))
+#define SL_SET_OR(field, i, bits) atomic_or(&sl_set.field[i], (bits))
+#define SL_SET_ADD(field, i, value) atomic_add(&sl_set.field[i], (value))
+/// The set's buffers (core/shared/set.h). keys and winner have `capacity` slots, or capacity is 0 and winner
+/// one a triangle.
+typedef struct SetRef {
+  volatile __global uint* keys;
+  volatile __global uint* winner;
+  volatile __global uint* fresh;
+  volatile __global uint* overflow;
+  uint capacity;
+} SetRef;
+#define slUint(x) ((uint)(x))
+#define slUint64(x) ((uint64)(x))
 #define slFloat(x) ((float)(x))
 
 #elif defined(__cplusplus)
 
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -56,9 +75,41 @@ using std::fabs;
 using std::sqrt;
 using uint = std::uint32_t;
 using uint64 = std::uint64_t;
-inline uint slMulHigh(uint a, uint b) { return uint((uint64(a) * uint64(b)) >> 32); }
-inline float slFloat(double x) { return float(x); }
+inline uint slUint(auto x) {
+  return static_cast<uint>(x);
+}
+inline uint64 slUint64(auto x) {
+  return static_cast<uint64>(x);
+}
+inline float slFloat(auto x) {
+  return static_cast<float>(x);
+}
+inline uint slMulHigh(uint a, uint b) {
+  return uint((uint64(a) * uint64(b)) >> 32);
+}
+/// The set's buffers (core/shared/set.h). keys and winner have `capacity` slots, or capacity is 0 and winner
+/// one a triangle.
+struct SetRef {
+  uint* keys;
+  uint* winner;
+  uint* fresh;
+  uint* overflow;
+  uint capacity;
+};
+inline uint slAtomicCas(uint& slot, uint expected, uint desired) {
+  std::atomic_ref<uint>(slot).compare_exchange_strong(expected, desired, std::memory_order_relaxed);
+  return expected;
+}
 }  // namespace sightline
+#define SL_SET_PARAM SetRef sl_set
+#define SL_SET sl_set
+#define SL_SET_CAPACITY sl_set.capacity
+#define SL_SET_LOAD(field, i) (std::atomic_ref<uint>(sl_set.field[i]).load(std::memory_order_relaxed))
+#define SL_SET_CAS(field, i, expected, desired) slAtomicCas(sl_set.field[i], (expected), (desired))
+#define SL_SET_OR(field, i, bits) \
+  std::atomic_ref<uint>(sl_set.field[i]).fetch_or((bits), std::memory_order_relaxed)
+#define SL_SET_ADD(field, i, value) \
+  std::atomic_ref<uint>(sl_set.field[i]).fetch_add((value), std::memory_order_relaxed)
 #define SL_STRUCT(S) struct S
 #define SL_FUNC inline
 #define SL_CONST constexpr
@@ -72,6 +123,18 @@ inline float slFloat(double x) { return float(x); }
 #define SL_FUNC
 #define SL_CONST const
 #define fabs abs
+// A shader declares the set's buffers sl_set_keys, sl_set_winner, sl_set_fresh, sl_set_overflow and the
+// constant sl_set_capacity before it includes core/shared/set.h; GLSL has no references, so the argument is a
+// dummy.
+#define SL_SET_PARAM uint sl_set
+#define SL_SET sl_set
+#define SL_SET_CAPACITY sl_set_capacity
+#define SL_SET_LOAD(field, i) (sl_set_##field[i])
+#define SL_SET_CAS(field, i, expected, desired) atomicCompSwap(sl_set_##field[i], (expected), (desired))
+#define SL_SET_OR(field, i, bits) atomicOr(sl_set_##field[i], (bits))
+#define SL_SET_ADD(field, i, value) atomicAdd(sl_set_##field[i], (value))
+#define slUint(x) uint(x)
+#define slUint64(x) uint64_t(x)
 #define slFloat(x) float(x)
 uint slMulHigh(uint a, uint b) {
   uint high;

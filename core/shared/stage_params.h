@@ -6,17 +6,21 @@ SL_NAMESPACE_BEGIN
 
 /// Constant for a view cell.
 SL_STRUCT(StageParams) {
-  uvec4 counts;   ///< x: n_ABSEdge, y: n_RSEdge, z: n_RSArea, w: number of faces
-  uvec4 shifts;   ///< random shifts (Cranley-Patterson) for the bases 2, 3, 5, 7: of random sampling
-  vec4 distances; ///< x: delta_ABS relative to the distance, y: delta_ABS in world units,
-                  ///< z: delta_RS relative, w: delta_RS in world units; relative and absolute parts add up
+  uvec4 counts;    ///< x: n_ABSEdge, y: n_RSEdge, z: n_RSArea, w: number of faces
+  uvec4 shifts;    ///< random shifts (Cranley-Patterson) for the bases 2, 3, 5, 7: of random sampling
+  vec4 distances;  ///< x: delta_ABS relative to the distance, y: delta_ABS in world units,
+                   ///< z: delta_RS relative, w: delta_RS in world units; relative and absolute parts add up
 };
 
-/// A run of random rays from one face. Slot s of the run is a work item; to trace coherent rays together,
-/// slots walk the strata of the directions (2^a by 3^b of them, see random_ray.h), not the sequence.
+/// A run of random rays from one face: the points first .. first + count - 1 of the Halton sequence. Work
+/// items do not walk the sequence itself but its strata, so that neighbouring items trace coherent rays: see
+/// random_ray.h. Filled by makeRandomSegment (core/gvs/random_segment.h).
 SL_STRUCT(RandomSegment) {
-  uvec4 range;   ///< x: face, y: low and z: high half of the first Halton index, w: number of rays
-  uvec4 strata;  ///< x: a, y: b, z: index of the segment's first ray in its batch (1 or more), w: unused
+  uvec4 range;         ///< x: face, y: low and z: high half of first, w: count
+  uvec4 batch;         ///< x: index of the first ray in its batch (1 or more), y: number of strata M,
+                       ///< z: slots a stratum (so there are y * z slots), w: first modulo M
+  uvec4 digits;        ///< exponents a, b, c, d: M = 2^a 3^b 5^c 7^d
+  uvec4 coefficients;  ///< of the Chinese remainder theorem for the moduli 2^a, 3^b, 5^c, 7^d
 };
 
 SL_NAMESPACE_END

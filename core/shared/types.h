@@ -48,8 +48,8 @@ SL_STRUCT(Face) {
 /// A triangle of the PVS with the ray that found it (its witness), in the order of discovery. The queue of
 /// the exploration and the PVS are this one list.
 SL_STRUCT(PvsEntry) {
-  uvec4 origin_triangle;   ///< xyz: bits of the ray's origin, w: triangle id
-  uvec4 direction_stage;   ///< xyz: bits of the ray's direction, w: kStage...
+  uvec4 origin_triangle;  ///< xyz: bits of the ray's origin, w: triangle id
+  uvec4 direction_stage;  ///< xyz: bits of the ray's direction, w: kStage...
 };
 
 SL_NAMESPACE_END

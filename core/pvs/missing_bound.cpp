@@ -1,0 +1,69 @@
+// Based on: C. Clopper and E. Pearson, "The use of confidence or fiducial limits illustrated in the case of
+// the binomial", Biometrika 1934; the binomial's probabilities after C. Loader, "Fast and accurate
+// computation of binomial probabilities", 2000: saddle point and deviance instead of differences of
+// logarithms of factorials, which at 1e10 rays would lose six digits.
+#include <cmath>
+
+#include "core/pvs/pvs.h"
+
+namespace sightline {
+namespace {
+
+/// Share of the probability left out on each side of a two-sided interval of 95 %.
+constexpr double kTail = 0.025;
+
+/// log(n!) minus Stirling's approximation of it.
+double stirlingError(double n) {
+  if (n < 16) return std::lgamma(n + 1) - (n + 0.5) * std::log(n) + n - 0.5 * std::log(2 * M_PI);
+  const double n2 = n * n;
+  return (1.0 / 12 - (1.0 / 360 - (1.0 / 1260 - (1.0 / 1680) / n2) / n2) / n2) / n;
+}
+
+/// x log(x / mean) + mean - x, without cancellation where the two are near.
+double deviance(double x, double mean) {
+  const double difference = x - mean;
+  if (std::fabs(difference) > 0.1 * (x + mean)) return x * std::log(x / mean) - difference;
+  const double v = difference / (x + mean);
+  double sum = difference * v, power = 2 * x * v;
+  for (int i = 1; i < 1000; ++i) {
+    power *= v * v;
+    const double next = sum + power / (2 * i + 1);
+    if (next == sum) break;
+    sum = next;
+  }
+  return sum;
+}
+
+/// Probability of exactly k of n, 0 < k < n, 0 < p < 1.
+double binomialProbability(double k, double n, double p) {
+  const double exponent = stirlingError(n) - stirlingError(k) - stirlingError(n - k) - deviance(k, n * p) -
+                          deviance(n - k, n * (1 - p));
+  return std::exp(exponent) * std::sqrt(n / (2 * M_PI * k * (n - k)));
+}
+
+/// Probability of k or fewer of n, k <= n p: terms shrink from k downwards.
+double lowerTail(double k, double n, double p) {
+  double term = binomialProbability(k, n, p), sum = term;
+  for (double i = k; i > 0 && term > sum * 1e-17; --i) {
+    term *= i / (n - i + 1) * ((1 - p) / p);
+    sum += term;
+  }
+  return sum;
+}
+
+}  // namespace
+
+double missingUpperBound(uint64_t missing, uint64_t rays) {
+  if (missing >= rays) return 1;
+  const double n = double(rays), k = double(missing);
+  if (missing == 0) return -std::expm1(std::log(kTail) / n);  // 1 - 0.025^(1/n)
+  double low = k / n, high = 1;
+  while (true) {
+    // Small shares need their digits too: halve the ratio while it is large.
+    const double middle = high > 2 * low ? std::sqrt(low * high) : 0.5 * (low + high);
+    if (middle <= low || middle >= high) return high;
+    (lowerTail(k, n, middle) > kTail ? low : high) = middle;
+  }
+}
+
+}  // namespace sightline

@@ -1,0 +1,70 @@
+#include "core/pvs/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/error.h"
+
+namespace sightline {
+namespace {
+
+[[noreturn]] void failOn(const std::filesystem::path& file, const char* action) {
+  throw Error(fmt::format("{}: cannot {}: {}", file.string(), action, std::strerror(errno)));
+}
+
+/// Without it the rename may be lost with the power. Some file systems cannot; then the rename must do.
+void flushFolder(const std::filesystem::path& file) {
+  const auto folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+void writeAll(int descriptor, std::span<const uint8_t> bytes, const std::filesystem::path& file) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) failOn(file, "write");
+    bytes = bytes.subspan(size_t(written));
+  }
+}
+
+void publish(int descriptor, const std::filesystem::path& from, const std::filesystem::path& to) {
+  if (::fsync(descriptor) != 0) failOn(from, "flush to disk");
+  if (::rename(from.c_str(), to.c_str()) != 0) failOn(to, "put in place");
+  flushFolder(to);
+}
+
+OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)), temporary_(file_) {
+  temporary_ += ".tmp";
+  if (std::filesystem::is_directory(file_)) {
+    throw Error(fmt::format("{}: is a folder; name a file", file_.string()));
+  }
+  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) failOn(file_, "create");
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ < 0) return;
+  ::close(descriptor_);
+  ::unlink(temporary_.c_str());
+}
+
+void OutputFile::write(std::string_view text) {
+  writeAll(descriptor_, {reinterpret_cast<const uint8_t*>(text.data()), text.size()}, temporary_);
+}
+
+void OutputFile::commit() {
+  publish(descriptor_, temporary_, file_);
+  ::close(descriptor_);
+  descriptor_ = -1;
+}
+
+}  // namespace sightline

@@ -1,0 +1,50 @@
+#pragma once
+#include <xxhash.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "core/pvs/byte_stream.h"
+#include "core/pvs/pvs.h"
+
+namespace sightline {
+
+/// What a bake that was cut off left in its part file: everything up to the last whole cell.
+struct PartialPvs {
+  PvsFile pvs;               ///< ids and witnesses included
+  uint64_t whole_bytes = 0;  ///< up to here the file is sound; 0: not even its head is there
+  uint64_t torn_bytes = 0;   ///< of a cell that was being written, after that
+};
+
+/// Reads a part file. Throws Error if it cannot be read or is another kind or version of file.
+PartialPvs loadPartialPvs(const std::filesystem::path& part);
+
+/// Writes a .pvs file cell by cell. Cells are appended to a part file, each with its checksum and flushed
+/// to the disk, so that a kill at any moment loses at most the cell in work; finish() completes the file and
+/// renames it. The part file is locked against a second writer. All throw Error.
+class PvsWriter {
+ public:
+  /// Starts over: cuts `part` to nothing and writes the head. head.cells is not written.
+  PvsWriter(const std::filesystem::path& part, const PvsFile& head);
+  /// Goes on after what loadPartialPvs found; cuts off the torn rest.
+  PvsWriter(const std::filesystem::path& part, const PartialPvs& left);
+  ~PvsWriter();
+  PvsWriter(const PvsWriter&) = delete;
+  PvsWriter& operator=(const PvsWriter&) = delete;
+
+  /// Cells must come in the order planned.
+  void append(const CellPvs& cell);
+  /// Ends the file and gives it its name.
+  void finish(const std::filesystem::path& file);
+
+ private:
+  explicit PvsWriter(const std::filesystem::path& part);
+  void write(const Bytes& bytes);
+
+  std::filesystem::path part_;
+  int descriptor_ = -1;
+  uint32_t cells_ = 0;
+  std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> checksum_;
+};
+
+}  // namespace sightline

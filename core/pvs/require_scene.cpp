@@ -1,0 +1,15 @@
+#include <fmt/core.h>
+
+#include "core/error.h"
+#include "core/pvs/pvs.h"
+
+namespace sightline {
+
+void requireScene(const PvsFile& pvs, const Scene& scene, const std::filesystem::path& file) {
+  if (pvs.triangle_count == scene.triangles.size() && pvs.scene_hash == hashScene(scene)) return;
+  throw Error(fmt::format("{}: was baked of another scene ({}, {} triangles; this one has {}{}); bake again",
+                          file.string(), pvs.scene_name, pvs.triangle_count, scene.triangles.size(),
+                          pvs.triangle_count == scene.triangles.size() ? ", but others" : ""));
+}
+
+}  // namespace sightline

@@ -1,0 +1,57 @@
+#include "core/scene/generate.h"
+
+#include "core/error.h"
+#include "core/scene/scene_generators.h"
+
+namespace sightline {
+namespace {
+
+struct Generator {
+  GeneratedSceneInfo info;
+  std::vector<ScenePart> (*parts)(uint64_t triangles, uint64_t seed);
+  std::vector<ViewCell> (*cells)(uint64_t triangles, uint64_t seed);
+};
+
+const std::vector<Generator>& generators() {
+  static const std::vector<Generator> all = {
+      {{"city", "streets in a grid, facades with recessed windows and ledges, trees, cars"},
+       cityParts,
+       cityCells},
+  };
+  return all;
+}
+
+const Generator& find(const std::string& name, uint64_t triangles) {
+  if (triangles < kMinGeneratedTriangles || triangles > kMaxGeneratedTriangles) {
+    throw Error("triangle count " + std::to_string(triangles) + " is out of range " +
+                    std::to_string(kMinGeneratedTriangles) + ".." + std::to_string(kMaxGeneratedTriangles),
+                kExitUsage);
+  }
+  std::string names;
+  for (const Generator& g : generators()) {
+    if (g.info.name == name) return g;
+    names += (names.empty() ? "" : ", ") + g.info.name;
+  }
+  throw Error("no generated scene is called '" + name + "': there are " + names, kExitUsage);
+}
+
+}  // namespace
+
+const std::vector<GeneratedSceneInfo>& generatedScenes() {
+  static const std::vector<GeneratedSceneInfo> infos = [] {
+    std::vector<GeneratedSceneInfo> list;
+    for (const Generator& g : generators()) list.push_back(g.info);
+    return list;
+  }();
+  return infos;
+}
+
+Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed) {
+  return assembleScene(find(name, triangles).parts(triangles, seed), triangles, seed);
+}
+
+std::vector<ViewCell> generateCells(const std::string& name, uint64_t triangles, uint64_t seed) {
+  return find(name, triangles).cells(triangles, seed);
+}
+
+}  // namespace sightline

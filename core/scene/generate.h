@@ -1,0 +1,35 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene.h"
+#include "core/scene/view_cell.h"
+
+namespace sightline {
+
+/// Range of triangle counts that generateScene takes.
+inline constexpr uint64_t kMinGeneratedTriangles = 1'000;
+inline constexpr uint64_t kMaxGeneratedTriangles = 20'000'000;
+
+/// The scenes that can be generated, with a line on each for --help.
+struct GeneratedSceneInfo {
+  std::string name;
+  std::string about;
+};
+const std::vector<GeneratedSceneInfo>& generatedScenes();
+
+/// Generates "city", "canyon", "plant" or "bistro". Metres, y up, ground near y = 0. The result has at most
+/// `triangles` triangles, and at least 0.97 of them (0.85 below 10,000). Extent and detail both grow with the
+/// count. Same name, count and seed: same bytes (only +, -, *, / and square roots enter the coordinates, no
+/// function of libm whose last digit differs by platform). No triangle is degenerate; each building, prop or
+/// pipe is an object of its own, with its vertices shared. Throws Error with exit code 2 for an unknown name
+/// or a count out of kMinGeneratedTriangles..kMaxGeneratedTriangles.
+Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed);
+
+/// Ten view cells in free space of the scene that generateScene makes of the same arguments: of each kind of
+/// the thesis some, named by it: flat-1 (a rectangle that looks along its normal), box-1 (a volume), street-1
+/// (long and narrow along a street, canyon or aisle). Throws as generateScene.
+std::vector<ViewCell> generateCells(const std::string& name, uint64_t triangles, uint64_t seed);
+
+}  // namespace sightline

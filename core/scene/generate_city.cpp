@@ -1,0 +1,241 @@
+// A city: blocks of houses in a grid of streets of various widths, with trees, lamps, cars and wires.
+//
+//        z                      Streets run between and around the blocks. A block is a pavement raised by
+//        ^  | # # # | # # # |   kKerb with two rows of lots; houses stand kPavement inside its edge.
+//        |  | # # # | # # # |   Free space: within kFreeLane of a street's axis up to kFreeHeight, and the
+//        |  +-------+-------+   crossings at any height.
+//        |  | # # # | # # # |
+//        +------------------> x
+#include <algorithm>
+#include <cmath>
+
+#include "core/scene/building.h"
+#include "core/scene/generator_random.h"
+#include "core/scene/scene_generators.h"
+#include "core/scene/street_props.h"
+
+namespace sightline {
+namespace {
+
+constexpr float kKerb = 0.15f;
+constexpr float kPavement = 3.6f;
+constexpr float kFreeLane = 3.2f;    // half width
+constexpr float kFreeHeight = 7.0f;  // wires hang above it
+constexpr uint32_t kLotsAlong = 3;
+
+/// A street's extent across it, and of the blocks behind it, along one axis.
+struct Axis {
+  std::vector<float> low, high;  // of street 0..n
+  uint32_t blocks() const { return uint32_t(low.size()) - 1; }
+  float center(uint32_t street) const { return (low[street] + high[street]) / 2; }
+  float block_low(uint32_t block) const { return high[block]; }
+  float block_high(uint32_t block) const { return low[block + 1]; }
+  float start() const { return low.front(); }
+  float end() const { return high.back(); }
+};
+
+struct CityLayout {
+  Axis x, z;  // streets at x.center(i) run along z
+};
+
+Axis drawAxis(GeneratorRandom random, uint32_t blocks, float block_size) {
+  Axis axis;
+  float at = 0;
+  for (uint32_t i = 0; i <= blocks; ++i) {
+    const float street = i == blocks / 2 ? 20.0f : random.uniform(13.0f, 17.0f);
+    axis.low.push_back(at);
+    axis.high.push_back(at + street);
+    at += street + block_size * random.uniform(0.85f, 1.15f);
+  }
+  const float middle = axis.end() / 2;
+  for (float& v : axis.low) v -= middle;
+  for (float& v : axis.high) v -= middle;
+  return axis;
+}
+
+CityLayout drawLayout(uint64_t triangles, uint64_t seed) {
+  // Half of the growth goes into the number of blocks, half into their detail.
+  const float blocks = 0.055f * std::sqrt(float(triangles));
+  const uint32_t n = std::max(2u, uint32_t(std::sqrt(blocks) + 0.5f));
+  return {drawAxis({seed, 0xc17a, 0}, n, 62), drawAxis({seed, 0xc17a, 1}, n, 46)};
+}
+
+std::string numbered(const char* what, uint32_t i, uint32_t j, uint32_t k) {
+  return std::string(what) + "-" + std::to_string(i) + "-" + std::to_string(j) + "-" + std::to_string(k);
+}
+
+void addGround(std::vector<ScenePart>& parts, const CityLayout& city) {
+  const Axis x = city.x, z = city.z;
+  parts.push_back({"road",
+                   [x, z](MeshBuilder& mesh, uint32_t level) {
+                     const uint32_t n = 2 * x.blocks() * std::max(1u, level);
+                     const float margin = 30;
+                     const float w = x.end() - x.start() + 2 * margin, d = z.end() - z.start() + 2 * margin;
+                     mesh.patch({x.start() - margin, 0, z.end() + margin}, {w, 0, 0}, {0, 0, -d}, n, n);
+                   },
+                   16});
+  for (uint32_t i = 0; i < x.blocks(); ++i) {
+    for (uint32_t j = 0; j < z.blocks(); ++j) {
+      const glm::vec3 low(x.block_low(i), 0, z.block_low(j)), high(x.block_high(i), kKerb, z.block_high(j));
+      parts.push_back({"pavement-" + std::to_string(i) + "-" + std::to_string(j),
+                       [low, high](MeshBuilder& mesh, uint32_t level) {
+                         mesh.box(low, high, kNoLowY | kNoHighY);
+                         const glm::vec3 size = high - low;
+                         const uint32_t nu = std::max(1u, level * uint32_t(size.x / 8));
+                         const uint32_t nv = std::max(1u, level * uint32_t(size.z / 8));
+                         mesh.patch({low.x, high.y, high.z}, {size.x, 0, 0}, {0, 0, -size.z}, nu, nv);
+                       },
+                       12});
+    }
+  }
+}
+
+uint32_t drawFloors(GeneratorRandom& random, float from_center) {
+  // Taller towards the middle, with some towers.
+  const float tall = 3.0f + 5.0f * (1 - from_center) + random.uniform(-1.5f, 2.5f);
+  return uint32_t(std::max(2.0f, random.chance(0.12f) ? tall * 1.8f + 2 : tall));
+}
+
+void addBlock(std::vector<ScenePart>& parts, const CityLayout& city, uint32_t i, uint32_t j, uint64_t seed) {
+  GeneratorRandom random(seed, 0xb10c, uint64_t(i) * 65536 + j);
+  const float x0 = city.x.block_low(i) + kPavement, x1 = city.x.block_high(i) - kPavement;
+  const float z0 = city.z.block_low(j) + kPavement, z1 = city.z.block_high(j) - kPavement;
+  const float n = float(city.x.blocks());
+  const float dx = (float(i) + 0.5f) / n - 0.5f, dz = (float(j) + 0.5f) / n - 0.5f;
+  const float from_center = std::min(1.0f, 2 * std::sqrt(dx * dx + dz * dz));
+  const float lot = (x1 - x0) / float(kLotsAlong);
+  for (uint32_t row = 0; row < 2; ++row) {
+    for (uint32_t k = 0; k < kLotsAlong; ++k) {
+      BuildingSpec spec;
+      const float gap = random.uniform(0.6f, 2.4f), court = random.uniform(2.0f, 4.5f);
+      spec.width = lot - (k + 1 < kLotsAlong ? gap : 0);
+      spec.depth = (z1 - z0) / 2 - court;
+      spec.frame.origin = {x0 + lot * float(k), kKerb, row == 0 ? z0 : z1 - spec.depth};
+      spec.floors = drawFloors(random, from_center);
+      spec.floor_height = random.uniform(3.0f, 3.6f);
+      spec.street_sides = row == 0 ? kSideLowZ : kSideHighZ;
+      if (k == 0) spec.street_sides |= kSideLowX;
+      if (k + 1 == kLotsAlong) spec.street_sides |= kSideHighX;
+      spec.seed = random.next();
+      parts.push_back({numbered("building", i, j, row * kLotsAlong + k),
+                       [spec](MeshBuilder& mesh, uint32_t level) { makeBuilding(mesh, spec, level); },
+                       kBuildingLevels});
+    }
+  }
+}
+
+/// One side of a street along a block: its frame stands on the kerb's edge, x points to the street's axis.
+void addStreetSide(std::vector<ScenePart>& parts, const Frame& kerb, float length, const std::string& name,
+                   GeneratorRandom random) {
+  const auto add = [&](const char* kind, Frame frame, auto make) {
+    const uint64_t own = random.next();
+    parts.push_back({kind + name + "-" + std::to_string(parts.size()),
+                     [frame, own, make](MeshBuilder& mesh, uint32_t level) {
+                       mesh.frame = frame;
+                       make(mesh, own, level);
+                     },
+                     kPropLevels});
+  };
+  const float slot = 6.5f;
+  for (float at = 4; at + 4 < length; at += slot) {
+    const float kind = random.unit();
+    const Frame pavement = kerb.at({-0.9f, kKerb, at});
+    if (kind < 0.45f) {
+      add("tree", pavement, makeTree);
+    } else if (kind < 0.75f) {
+      add("lamp", pavement, makeLamp);
+    } else if (kind < 0.9f) {
+      add("bin", pavement, makeBin);
+    }
+    if (random.chance(0.6f)) {
+      add("car", kerb.at({1.25f, 0, at + random.uniform(-0.4f, 0.4f)}, random.chance(0.5f) ? 0.0f : 0.5f),
+          makeCar);
+    }
+  }
+}
+
+void addWires(std::vector<ScenePart>& parts, glm::vec3 start, glm::vec3 along, glm::vec3 across, float length,
+              const std::string& name, GeneratorRandom random) {
+  for (float at = 12; at + 8 < length; at += 24) {
+    const glm::vec3 a = start + along * at + glm::vec3(0, random.uniform(8.5f, 9.5f), 0);
+    parts.push_back({"wire" + name + "-" + std::to_string(parts.size()),
+                     [a, across](MeshBuilder& mesh, uint32_t level) { makeWire(mesh, a, a + across, level); },
+                     kPropLevels});
+  }
+}
+
+void addStreets(std::vector<ScenePart>& parts, const CityLayout& city, uint64_t seed) {
+  const float reach = kPavement - 0.01f;  // wires go from wall to wall
+  for (uint32_t i = 0; i <= city.x.blocks(); ++i) {
+    for (uint32_t j = 0; j < city.z.blocks(); ++j) {
+      const std::string name = "-north-" + std::to_string(i) + "-" + std::to_string(j);
+      const float z0 = city.z.block_low(j), z1 = city.z.block_high(j);
+      const float x0 = city.x.low[i], x1 = city.x.high[i];
+      const uint64_t tag = uint64_t(i) * 65536 + j;
+      if (i > 0) {
+        addStreetSide(parts, Frame{}.at({x0, 0, z0}), z1 - z0, name, {seed, 0x51de0, tag});
+      }
+      if (i < city.x.blocks()) {
+        addStreetSide(parts, Frame{}.at({x1, 0, z1}, 0.5f), z1 - z0, name, {seed, 0x51de1, tag});
+      }
+      if (i > 0 && i < city.x.blocks()) {
+        addWires(parts, {x0 - reach, 0, z0}, {0, 0, 1}, {x1 - x0 + 2 * reach, 0, 0}, z1 - z0, name,
+                 {seed, 0x3172, tag});
+      }
+    }
+  }
+  for (uint32_t j = 0; j <= city.z.blocks(); ++j) {
+    for (uint32_t i = 0; i < city.x.blocks(); ++i) {
+      const std::string name = "-east-" + std::to_string(i) + "-" + std::to_string(j);
+      const float x0 = city.x.block_low(i), x1 = city.x.block_high(i);
+      const uint64_t tag = uint64_t(i) * 65536 + j;
+      if (j > 0) {
+        addStreetSide(parts, Frame{}.at({x1, 0, city.z.low[j]}, -0.25f), x1 - x0, name, {seed, 0x51de2, tag});
+      }
+      if (j < city.z.blocks()) {
+        addStreetSide(parts, Frame{}.at({x0, 0, city.z.high[j]}, 0.25f), x1 - x0, name, {seed, 0x51de3, tag});
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed) {
+  const CityLayout city = drawLayout(triangles, seed);
+  std::vector<ScenePart> parts;
+  addGround(parts, city);
+  for (uint32_t i = 0; i < city.x.blocks(); ++i) {
+    for (uint32_t j = 0; j < city.z.blocks(); ++j) addBlock(parts, city, i, j, seed);
+  }
+  addStreets(parts, city, seed);
+  return parts;
+}
+
+std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed) {
+  const CityLayout city = drawLayout(triangles, seed);
+  const uint32_t n = city.x.blocks(), m = n / 2;
+  const double x = city.x.center(m), z = city.z.center(m);  // the crossing of the two avenues
+  const double x_length = city.x.end() - city.x.start(), z_length = city.z.end() - city.z.start();
+  const double first_z = (city.z.block_low(0) + city.z.block_high(0)) / 2;
+  const double last_z = (city.z.block_low(n - 1) + city.z.block_high(n - 1)) / 2;
+  const double first_x = (city.x.block_low(0) + city.x.block_high(0)) / 2;
+  const double side_z = city.z.center(n - 1);
+  return {
+      {"flat-1", {x, 2.3, first_z}, {5, 4, 0}, {0, 0, 0}},
+      {"flat-2", {x, 2.3, last_z}, {5, 4, 0}, {0, 180, 0}},
+      {"flat-3", {first_x, 2.3, z}, {5, 4, 0}, {0, 98, 0}},
+      {"flat-4", {x, 16, z}, {10, 4, 0}, {20, 38, 0}},
+      {"box-1", {x, 1.7, (first_z + z) / 2}, {4, 3, 6}, {0, 0, 0}},
+      {"box-2", {x, 14, z}, {8, 6, 8}, {0, 10, 0}},
+      {"box-3", {double(city.x.center(0)), 1.6, side_z}, {1, 1, 1}, {0, 45, 0}},
+      {"street-1", {x, 1.5, 0}, {2.5, 2, std::min(150.0, z_length * 0.8)}, {0, 0, 0}},
+      {"street-2", {0, 1.5, z}, {2.5, 2, std::min(150.0, x_length * 0.8)}, {0, 90, 0}},
+      {"street-3",
+       {double(city.x.center(n - 1)), 1.5, 0},
+       {2.5, 2, std::min(600.0, z_length * 0.9)},
+       {0, 0, 0}},
+  };
+}
+
+}  // namespace sightline

@@ -1,0 +1,17 @@
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/scene/scene_parts.h"
+#include "core/scene/view_cell.h"
+
+namespace sightline {
+
+// The generators behind generate.h, a file each. Parts and cells of one scene come from the same layout,
+// which depends on count and seed only; that is how cells know where free space is.
+
+std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed);
+std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed);
+
+}  // namespace sightline

@@ -1,0 +1,28 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/scene/mesh_builder.h"
+#include "core/scene/scene.h"
+
+namespace sightline {
+
+/// A thing in a generated scene that can be made with more or fewer triangles.
+struct ScenePart {
+  std::string name;
+  /// Level 0 is the coarsest (may be nothing at all); levels past it are as high as the count demands. Must
+  /// depend on its arguments only, and ask the builder for nothing but to add shapes.
+  std::function<void(MeshBuilder&, uint32_t level)> make;
+  /// The highest level that is of use.
+  uint32_t max_level = 0;
+};
+
+/// Makes all parts, in order, at levels such that the scene has as close to `triangles` triangles as the
+/// levels allow, never more: first all at the highest common level, then single ones, in an order drawn from
+/// seed, one level higher for as long as they fit. Parts without triangles are left out.
+/// Throws Error when even level 0 is more than `triangles`.
+Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed);
+
+}  // namespace sightline

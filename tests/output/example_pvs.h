@@ -1,0 +1,80 @@
+#pragma once
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "core/pvs/pvs.h"
+
+namespace sightline {
+
+/// A folder that goes away with the test.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "sightline-XXXXXX").string();
+    path_ = ::mkdtemp(pattern.data());
+  }
+  ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::vector<uint8_t> readBytes(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+inline void writeBytes(const std::filesystem::path& file, const std::vector<uint8_t>& bytes) {
+  std::ofstream out(file, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
+}
+
+inline CellPvs exampleCell(const ViewCell& cell, std::vector<uint32_t> ids, bool witnesses) {
+  CellPvs pvs;
+  pvs.cell = cell;
+  pvs.stats.random = {1000, ids.size(), 0.5};
+  pvs.stats.border = {2000, 3, 0.25};
+  pvs.stats.reverse = {30, 1, 0.125};
+  pvs.stats.contained_triangles = 2;
+  pvs.stats.iterations = 4;
+  pvs.stats.stop = StopReason::kRayLimit;
+  pvs.stats.validation_rays = 500;
+  pvs.stats.missing_rays = 1;
+  pvs.stats.seconds = 1.5;
+  pvs.stats.peak_device_bytes = 1 << 20;
+  pvs.triangles = std::move(ids);
+  if (witnesses) {
+    for (uint32_t id : pvs.triangles) {
+      pvs.witnesses.push_back({glm::vec3(float(id), 1, 2), glm::vec3(-1, float(id), 0.5f), id % 4});
+    }
+  }
+  return pvs;
+}
+
+/// Two cells of three planned; the second set is empty.
+inline PvsFile examplePvs(bool witnesses = true) {
+  PvsFile pvs;
+  pvs.scene_hash = 0x0123456789abcdefu;
+  pvs.triangle_count = 1000;
+  pvs.scene_name = "courtyard.obj";
+  pvs.device = "cpu";
+  pvs.params.n_rand = 4321;
+  pvs.params.delta_abs = 0.001f;
+  pvs.params.max_seconds = 12.5;
+  pvs.params.seed = 77;
+  pvs.has_witnesses = witnesses;
+  pvs.planned = {{"a", {1, 2, 3}, {4, 5, 0}, {6, 7, 8}},
+                 {"b-\xc3\xa9", {0, 0, 0}, {1, 1, 1}, {0, 0, 0}},
+                 {"c", {9, 0, 0}, {1, 1, 1}, {0, 45, 0}}};
+  pvs.cells = {exampleCell(pvs.planned[0], {0, 1, 2, 7, 300, 998, 999}, witnesses),
+               exampleCell(pvs.planned[1], {}, witnesses)};
+  return pvs;
+}
+
+}  // namespace sightline
