@@ -11,10 +11,10 @@ namespace sightline {
 /// A box (or rectangle) from which visibility is computed. As in the cells file:
 /// {"cells":[{"name":"street-1","center":[x,y,z],"size":[w,h,d],"rotation":[rx,ry,rz]}]}
 struct ViewCell {
-  std::string name;            ///< unique in its file, not empty
-  glm::dvec3 center{0.0};      ///< world space
-  glm::dvec3 size{0.0};        ///< full extents along the local axes, >= 0, at most one of them zero
-  glm::dvec3 rotation{0.0};    ///< degrees about x, then y, then z
+  std::string name;          ///< unique in its file, not empty
+  glm::dvec3 center{0.0};    ///< world space
+  glm::dvec3 size{0.0};      ///< full extents along the local axes, >= 0, at most one of them zero
+  glm::dvec3 rotation{0.0};  ///< degrees about x, then y, then z
 
   /// With size.z == 0 the cell is a rectangle in its local xy plane that looks along local +z only. With
   /// size.x or size.y zero it is a sheet that looks to both sides.

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "core/error.h"
+#include "core/scene/file_io.h"
+#include "core/scene/json_text.h"
+#include "core/scene/view_cell.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+
+/// Says where in the file something is wrong: "cells.json: cells[3].size: ...".
+[[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what) {
+  throw Error(fmt::format("{}: {}: {}", file, place, what));
+}
+
+void checkKeys(const json& object, const std::set<std::string>& allowed, const std::string& file,
+               const std::string& place) {
+  for (const auto& [key, value] : object.items()) {
+    if (!allowed.contains(key)) {
+      fail(file, place,
+           fmt::format("unknown key {}, expected one of {}", json(key).dump(), json(allowed).dump()));
+    }
+  }
+}
+
+glm::dvec3 readVector(const json& value, const std::string& file, const std::string& place) {
+  if (!value.is_array() || value.size() != 3) fail(file, place, "expected three numbers [x, y, z]");
+  glm::dvec3 result;
+  for (int i = 0; i < 3; ++i) {
+    const json& number = value[size_t(i)];
+    if (!number.is_number()) fail(file, fmt::format("{}[{}]", place, i), "expected a number");
+    result[i] = number.get<double>();
+  }
+  return result;
+}
+
+void checkName(const std::string& name, const std::string& file, const std::string& place) {
+  if (name.empty()) fail(file, place, "is empty; every cell needs a name");
+  for (const char c : name) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) fail(file, place, "has a control character");
+  }
+}
+
+void checkFinite(const glm::dvec3& value, const std::string& file, const std::string& place) {
+  for (int i = 0; i < 3; ++i) {
+    if (!std::isfinite(value[i])) fail(file, fmt::format("{}[{}]", place, i), "is not a finite number");
+  }
+}
+
+void checkSize(const glm::dvec3& size, const std::string& file, const std::string& place) {
+  int zeros = 0;
+  for (int i = 0; i < 3; ++i) {
+    const std::string element = fmt::format("{}[{}]", place, i);
+    if (size[i] < 0.0) fail(file, element, fmt::format("{} is negative", size[i]));
+    if (size[i] == 0.0) ++zeros;
+    if (size[i] > 0.0 && float(size[i]) == 0.0f) {
+      fail(file, element, fmt::format("{} is too small for single precision", size[i]));
+    }
+  }
+  if (zeros > 1) fail(file, place, "the cell has no area; at most one extent may be 0");
+}
+
+void checkCell(const ViewCell& cell, const std::string& file, const std::string& place) {
+  checkName(cell.name, file, place + ".name");
+  checkFinite(cell.center, file, place + ".center");
+  checkFinite(cell.size, file, place + ".size");
+  checkFinite(cell.rotation, file, place + ".rotation");
+  checkSize(cell.size, file, place + ".size");
+  for (const glm::vec3& corner : cellCorners(cell)) {
+    if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z) ||
+        !std::isfinite(float(cell.size.x)) || !std::isfinite(float(cell.size.y)) ||
+        !std::isfinite(float(cell.size.z))) {
+      fail(file, place, "reaches beyond the range of single precision");
+    }
+  }
+}
+
+/// Every cell by itself, then that no name occurs twice.
+void checkCells(const std::vector<ViewCell>& cells, const std::string& file) {
+  if (cells.empty()) fail(file, "cells", "is empty; at least one view cell is needed");
+  std::set<std::string> names;
+  for (size_t i = 0; i < cells.size(); ++i) {
+    const std::string place = fmt::format("cells[{}]", i);
+    checkCell(cells[i], file, place);
+    if (!names.insert(cells[i].name).second) {
+      fail(file, place + ".name",
+           fmt::format("{} is the name of an earlier cell", json(cells[i].name).dump()));
+    }
+  }
+}
+
+ViewCell readCell(const json& value, const std::string& file, const std::string& place) {
+  if (!value.is_object()) fail(file, place, "expected an object");
+  checkKeys(value, {"name", "center", "size", "rotation"}, file, place);
+  for (const char* key : {"name", "center", "size"}) {
+    if (!value.contains(key)) fail(file, place, fmt::format("key \"{}\" is missing", key));
+  }
+  if (!value["name"].is_string()) fail(file, place + ".name", "expected a text");
+  ViewCell cell;
+  cell.name = value["name"].get<std::string>();
+  cell.center = readVector(value["center"], file, place + ".center");
+  cell.size = readVector(value["size"], file, place + ".size");
+  if (value.contains("rotation")) cell.rotation = readVector(value["rotation"], file, place + ".rotation");
+  return cell;
+}
+
+std::string vectorText(const glm::dvec3& value) {
+  return fmt::format("[{}, {}, {}]", json(value.x).dump(), json(value.y).dump(), json(value.z).dump());
+}
+
+}  // namespace
+
+std::vector<ViewCell> loadCells(const std::filesystem::path& file) {
+  const std::string name = file.string();
+  const FileBytes bytes = readFile(file);
+  if (bytes.size == 0) throw Error(fmt::format("{}: is empty, expected {{\"cells\":[...]}}", name));
+  const json document = parseJson(bytes.view(), name);
+  if (!document.is_object()) throw Error(fmt::format("{}: expected an object {{\"cells\":[...]}}", name));
+  checkKeys(document, {"cells"}, name, "top level");
+  if (!document.contains("cells")) fail(name, "top level", "key \"cells\" is missing");
+  if (!document["cells"].is_array()) fail(name, "cells", "expected a list");
+
+  std::vector<ViewCell> cells;
+  for (const json& value : document["cells"]) {
+    cells.push_back(readCell(value, name, fmt::format("cells[{}]", cells.size())));
+  }
+  checkCells(cells, name);
+  return cells;
+}
+
+void saveCells(const std::vector<ViewCell>& cells, const std::filesystem::path& file) {
+  std::string text = "{\"cells\": [\n";
+  try {
+    checkCells(cells, file.string());
+    for (size_t i = 0; i < cells.size(); ++i) {
+      text += fmt::format("  {{\"name\": {}, \"center\": {}, \"size\": {}, \"rotation\": {}}}{}\n",
+                          json(cells[i].name).dump(), vectorText(cells[i].center), vectorText(cells[i].size),
+                          vectorText(cells[i].rotation), i + 1 < cells.size() ? "," : "");
+    }
+  } catch (const json::exception&) {
+    throw Error(fmt::format("{}: a cell's name is not valid UTF-8", file.string()));
+  }
+  text += "]}\n";
+  OutputFile output(file);
+  output.write(text);
+  output.commit();
+}
+
+}  // namespace sightline

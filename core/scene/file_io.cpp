@@ -1,0 +1,94 @@
+#include "core/scene/file_io.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/error.h"
+
+namespace sightline {
+namespace {
+
+std::string reason(int error_number) {
+  return std::strerror(error_number);
+}
+
+/// Closes a file descriptor at the end of a scope.
+struct Descriptor {
+  int value = -1;
+  ~Descriptor() {
+    if (value >= 0) close(value);
+  }
+};
+
+}  // namespace
+
+FileBytes readFile(const std::filesystem::path& file) {
+  const Descriptor descriptor{open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  if (descriptor.value < 0) throw Error(fmt::format("{}: cannot open: {}", file.string(), reason(errno)));
+  struct stat status {};
+  if (fstat(descriptor.value, &status) != 0) {
+    throw Error(fmt::format("{}: cannot read: {}", file.string(), reason(errno)));
+  }
+  if (S_ISDIR(status.st_mode)) throw Error(fmt::format("{}: is a directory, not a file", file.string()));
+  if (!S_ISREG(status.st_mode)) throw Error(fmt::format("{}: is not a regular file", file.string()));
+
+  FileBytes bytes;
+  const size_t expected = size_t(status.st_size);
+  try {
+    bytes.data = std::make_unique_for_overwrite<char[]>(expected);
+  } catch (const std::bad_alloc&) {
+    throw Error(fmt::format("{}: {} bytes do not fit into memory", file.string(), expected));
+  }
+  while (bytes.size < expected) {
+    const ssize_t got = read(descriptor.value, bytes.data.get() + bytes.size, expected - bytes.size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) throw Error(fmt::format("{}: cannot read: {}", file.string(), reason(errno)));
+    if (got == 0) throw Error(fmt::format("{}: became shorter while it was read", file.string()));
+    bytes.size += size_t(got);
+  }
+  return bytes;
+}
+
+OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)) {
+  temporary_ = file_;
+  temporary_ += fmt::format(".tmp{}", getpid());
+  stream_ = std::fopen(temporary_.c_str(), "wbe");
+  if (stream_ == nullptr) fail("create");
+}
+
+OutputFile::~OutputFile() {
+  if (stream_ == nullptr) return;
+  std::fclose(stream_);
+  std::remove(temporary_.c_str());
+}
+
+void OutputFile::fail(const char* what) {
+  throw Error(fmt::format("{}: cannot {}: {}", file_.string(), what, reason(errno)));
+}
+
+void OutputFile::write(const void* bytes, size_t size) {
+  if (size != 0 && std::fwrite(bytes, 1, size, stream_) != size) fail("write");
+}
+
+void OutputFile::commit() {
+  if (std::fflush(stream_) != 0) fail("write");
+  if (std::rename(temporary_.c_str(), file_.c_str()) != 0) fail("rename the finished file to this name");
+  std::FILE* stream = stream_;
+  stream_ = nullptr;
+  if (std::fclose(stream) != 0) fail("close");
+}
+
+std::string lowerExtension(const std::filesystem::path& file) {
+  std::string extension = file.extension().string();
+  for (char& c : extension) {
+    if (c >= 'A' && c <= 'Z') c = char(c - 'A' + 'a');
+  }
+  return extension;
+}
+
+}  // namespace sightline

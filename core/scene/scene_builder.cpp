@@ -1,0 +1,166 @@
+#include "core/scene/scene_builder.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.h"
+#include "core/scene/triangle_area.h"
+#include "core/scene/triangulate.h"
+
+namespace sightline {
+namespace {
+
+bool isFinite(const glm::vec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Length of the UTF-8 sequence at the start of the text, 0 if it is not one (RFC 3629).
+size_t utf8Length(std::string_view text) {
+  const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const auto continues = [&](size_t i) { return (byte(i) & 0xc0u) == 0x80u; };
+  const unsigned first = byte(0);
+  if (first < 0x80) return 1;
+  if (first >= 0xc2 && first <= 0xdf) return continues(1) ? 2 : 0;
+  if (first >= 0xe0 && first <= 0xef) {
+    if (!continues(1) || !continues(2)) return 0;
+    const bool overlong = first == 0xe0 && byte(1) < 0xa0;
+    const bool surrogate = first == 0xed && byte(1) >= 0xa0;
+    return overlong || surrogate ? 0 : 3;
+  }
+  if (first >= 0xf0 && first <= 0xf4) {
+    if (!continues(1) || !continues(2) || !continues(3)) return 0;
+    const bool out_of_range = (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90);
+    return out_of_range ? 0 : 4;
+  }
+  return 0;
+}
+
+uint64_t countDegenerate(const Scene& scene) {
+  return tbb::parallel_reduce(
+      tbb::blocked_range<size_t>(0, scene.triangles.size(), 1 << 16), uint64_t(0),
+      [&](const tbb::blocked_range<size_t>& range, uint64_t count) {
+        for (size_t i = range.begin(); i != range.end(); ++i) {
+          const glm::uvec3& t = scene.triangles[i];
+          if (hasZeroArea(scene.positions[t.x], scene.positions[t.y], scene.positions[t.z])) ++count;
+        }
+        return count;
+      },
+      std::plus<>());
+}
+
+}  // namespace
+
+std::string cleanName(std::string_view name) {
+  std::string result;
+  while (!name.empty()) {
+    const size_t length = utf8Length(name);
+    const auto first = static_cast<unsigned char>(name[0]);
+    const bool control = first < 0x20 || first == 0x7f;
+    if (length == 0 || control) {
+      result += first == '\t' ? ' ' : '_';
+    } else {
+      result += name.substr(0, length);
+    }
+    name.remove_prefix(std::max<size_t>(length, 1));
+  }
+  const size_t begin = result.find_first_not_of(' ');
+  if (begin == std::string::npos) return {};
+  return result.substr(begin, result.find_last_not_of(' ') - begin + 1);
+}
+
+void SceneBuilder::addPosition(const glm::vec3& position, const Place& place) {
+  if (scene_.positions.size() >= kMaxElements) throw Error(fmt::format("{}: too many vertices", place()));
+  if (isFinite(position)) {
+    scene_.positions.push_back(position);
+    return;
+  }
+  if (!repair_) {
+    throw Error(fmt::format("{}: vertex ({}, {}, {}) is not finite; --repair drops its triangles", place(),
+                            position.x, position.y, position.z));
+  }
+  bad_vertices_.push_back(uint32_t(scene_.positions.size()));
+  scene_.positions.emplace_back(0.0f);
+}
+
+bool SceneBuilder::isBadVertex(int64_t index) const {
+  return !bad_vertices_.empty() &&
+         std::binary_search(bad_vertices_.begin(), bad_vertices_.end(), uint32_t(index));
+}
+
+void SceneBuilder::closeObject() {
+  const auto end = uint32_t(scene_.triangles.size());
+  object_.triangle_count = end - object_.first_triangle;
+  if (object_.triangle_count != 0) scene_.objects.push_back(object_);
+  object_.first_triangle = end;
+}
+
+void SceneBuilder::beginObject(std::string_view name, const std::string& fallback) {
+  closeObject();
+  object_.name = cleanName(name);
+  if (object_.name.empty()) object_.name = fallback;
+}
+
+bool SceneBuilder::usable(std::span<const int64_t> corners, const Place& place, int64_t first_number) const {
+  const auto count = int64_t(scene_.positions.size());
+  if (corners.size() < 3) {
+    if (repair_) return false;
+    throw Error(fmt::format("{}: face has {} vertices, needs at least 3; --repair drops it", place(),
+                            corners.size()));
+  }
+  for (const int64_t corner : corners) {
+    if (corner >= 0 && corner < count && !isBadVertex(corner)) continue;
+    if (repair_) return false;
+    if (count == 0) throw Error(fmt::format("{}: face without any vertex in the file before it", place()));
+    throw Error(fmt::format("{}: vertex index {} is out of range {}..{}; --repair drops the face", place(),
+                            corner + first_number, first_number, count - 1 + first_number));
+  }
+  return true;
+}
+
+void SceneBuilder::addTriangle(const glm::uvec3& triangle, const Place& place) {
+  if (scene_.triangles.size() >= kMaxElements) throw Error(fmt::format("{}: too many triangles", place()));
+  scene_.triangles.push_back(triangle);
+}
+
+void SceneBuilder::addPolygon(std::span<const int64_t> corners, const Place& place, int64_t first_number) {
+  if (!usable(corners, place, first_number)) {
+    scene_.repaired_triangles += corners.size() < 3 ? 1 : corners.size() - 2;
+    return;
+  }
+  if (corners.size() == 3) {
+    addTriangle(glm::uvec3(corners[0], corners[1], corners[2]), place);
+    return;
+  }
+  corners_.clear();
+  cut_.clear();
+  for (const int64_t corner : corners) corners_.push_back(scene_.positions[size_t(corner)]);
+  if (!triangulate(corners_, cut_)) {
+    throw Error(fmt::format("{}: concave face has {} corners, at most {} are supported; split it", place(),
+                            corners.size(), kMaxConcaveCorners));
+  }
+  for (const glm::uvec3& t : cut_) addTriangle(glm::uvec3(corners[t.x], corners[t.y], corners[t.z]), place);
+}
+
+void SceneBuilder::reserve(uint64_t positions, uint64_t triangles) {
+  scene_.positions.reserve(scene_.positions.size() + positions);
+  scene_.triangles.reserve(scene_.triangles.size() + triangles);
+}
+
+Scene SceneBuilder::finish(const std::string& file) {
+  closeObject();
+  if (scene_.triangles.empty()) {
+    if (scene_.repaired_triangles != 0) {
+      throw Error(fmt::format("{}: no triangle is left; all {} were dropped as bad", file,
+                              scene_.repaired_triangles));
+    }
+    throw Error(fmt::format("{}: holds no triangles", file));
+  }
+  scene_.degenerate_triangles = countDegenerate(scene_);
+  return std::move(scene_);
+}
+
+}  // namespace sightline

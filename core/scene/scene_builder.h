@@ -1,0 +1,64 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/scene.h"
+
+namespace sightline {
+
+/// Most vertices and triangles that a scene may have: ids are 32 bit, the last two values are reserved.
+inline constexpr uint64_t kMaxElements = 0xfffffffeull - 1;
+
+/// A name fit for every file format: control characters and bytes that are not UTF-8 become '_', blanks at
+/// both ends go.
+std::string cleanName(std::string_view name);
+
+/// Collects what a loader reads into a Scene that keeps the invariants. Loaders say where they are by a
+/// function that makes the text of the place ("city.obj:812"), called only for an error.
+class SceneBuilder {
+ public:
+  using Place = std::function<std::string()>;
+
+  explicit SceneBuilder(const SceneLoadOptions& options) : repair_(options.repair) {}
+
+  /// Throws Error for a non-finite position, or, to repair, marks the vertex: its triangles are dropped.
+  void addPosition(const glm::vec3& position, const Place& place);
+  uint64_t positionCount() const { return scene_.positions.size(); }
+
+  /// Following triangles belong to an object of that name. An empty or blank name becomes `fallback`.
+  void beginObject(std::string_view name, const std::string& fallback);
+
+  /// Adds the triangles of a polygon; vertex numbers count from 0, negative ones are bad. Bad numbers and
+  /// fewer than three corners are errors, or, to repair, dropped and counted. A message prints the number
+  /// plus first_number, as the file counts.
+  void addPolygon(std::span<const int64_t> corners, const Place& place, int64_t first_number = 0);
+
+  void countAlpha(uint64_t triangles) { scene_.alpha_triangles += triangles; }
+  void countSingleSided(uint64_t triangles) { scene_.single_sided_triangles += triangles; }
+  uint64_t triangleCount() const { return scene_.triangles.size(); }
+
+  /// Room for so many more, to avoid copies.
+  void reserve(uint64_t positions, uint64_t triangles);
+
+  /// The scene, with the degenerate triangles counted. Throws Error without any triangle.
+  Scene finish(const std::string& file);
+
+ private:
+  void addTriangle(const glm::uvec3& triangle, const Place& place);
+  bool usable(std::span<const int64_t> corners, const Place& place, int64_t first_number) const;
+  bool isBadVertex(int64_t index) const;
+  void closeObject();
+
+  bool repair_;
+  Scene scene_;
+  SceneObject object_;
+  std::vector<uint32_t> bad_vertices_;  ///< ascending; only to repair
+  std::vector<glm::vec3> corners_;      ///< of the polygon in work
+  std::vector<glm::uvec3> cut_;
+};
+
+}  // namespace sightline
