@@ -11,7 +11,7 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "core/pvs/output_file.h"
+#include "core/pvs/publish.h"
 #include "core/pvs/pvs_sections.h"
 
 namespace sightline {

@@ -1,4 +1,4 @@
-#include "core/pvs/output_file.h"
+#include "core/pvs/publish.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -40,31 +40,6 @@ void publish(int descriptor, const std::filesystem::path& from, const std::files
   if (::fsync(descriptor) != 0) failOn(from, "flush to disk");
   if (::rename(from.c_str(), to.c_str()) != 0) failOn(to, "put in place");
   flushFolder(to);
-}
-
-OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)), temporary_(file_) {
-  temporary_ += ".tmp";
-  if (std::filesystem::is_directory(file_)) {
-    throw Error(fmt::format("{}: is a folder; name a file", file_.string()));
-  }
-  descriptor_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) failOn(file_, "create");
-}
-
-OutputFile::~OutputFile() {
-  if (descriptor_ < 0) return;
-  ::close(descriptor_);
-  ::unlink(temporary_.c_str());
-}
-
-void OutputFile::write(std::string_view text) {
-  writeAll(descriptor_, {reinterpret_cast<const uint8_t*>(text.data()), text.size()}, temporary_);
-}
-
-void OutputFile::commit() {
-  publish(descriptor_, temporary_, file_);
-  ::close(descriptor_);
-  descriptor_ = -1;
 }
 
 }  // namespace sightline
