@@ -17,6 +17,9 @@ const std::vector<Generator>& generators() {
       {{"city", "streets in a grid, facades with recessed windows and ledges, trees, cars"},
        cityParts,
        cityCells},
+      {{"canyon", "terrain with overhanging cliffs, bridges and arches of rock, hoodoos, boulders"},
+       canyonParts,
+       canyonCells},
   };
   return all;
 }

@@ -77,23 +77,9 @@ void MeshBuilder::box(glm::vec3 low, glm::vec3 high, uint32_t leave_out) {
 }
 
 void MeshBuilder::patch(glm::vec3 corner, glm::vec3 u, glm::vec3 v, uint32_t nu, uint32_t nv) {
-  if (counting_) {
-    vertex_count_ += uint64_t(nu + 1) * (nv + 1);
-    triangle_count_ += uint64_t(nu) * nv * 2;
-    return;
-  }
-  const uint32_t first = uint32_t(vertex_count_);
-  for (uint32_t j = 0; j <= nv; ++j) {
-    for (uint32_t i = 0; i <= nu; ++i) {
-      vertex(corner + u * (float(i) / float(nu)) + v * (float(j) / float(nv)));
-    }
-  }
-  for (uint32_t j = 0; j < nv; ++j) {
-    for (uint32_t i = 0; i < nu; ++i) {
-      const uint32_t a = first + j * (nu + 1) + i;
-      quad(a, a + 1, a + nu + 2, a + nu + 1);
-    }
-  }
+  sheet(nu, nv, false, [&](uint32_t i, uint32_t j) {
+    return corner + u * (float(i) / float(nu)) + v * (float(j) / float(nv));
+  });
 }
 
 void MeshBuilder::lathe(std::span<const LathePoint> profile, uint32_t sides) {

@@ -55,6 +55,10 @@ class MeshBuilder {
   void box(glm::vec3 low, glm::vec3 high, uint32_t leave_out = 0);
   /// nu by nv quads over corner + [0, 1] u + [0, 1] v; faces u x v.
   void patch(glm::vec3 corner, glm::vec3 u, glm::vec3 v, uint32_t nu, uint32_t nv);
+  /// nu by nv quads of any surface: point(i, j) is called once for each vertex, i = 0..nu, j = 0..nv, and not
+  /// at all where only counting. closed: column nu is column 0. Faces d/di x d/dj.
+  template <class Point>
+  void sheet(uint32_t nu, uint32_t nv, bool closed, Point&& point);
   /// Turns the profile (from bottom to top, outside to the right) about the frame's y axis. sides >= 3.
   /// First and last point may have radius 0 (a pole); an open end stays open.
   void lathe(std::span<const LathePoint> profile, uint32_t sides);
@@ -76,5 +80,25 @@ class MeshBuilder {
   std::vector<glm::vec3> positions_;
   std::vector<glm::uvec3> triangles_;
 };
+
+template <class Point>
+void MeshBuilder::sheet(uint32_t nu, uint32_t nv, bool closed, Point&& point) {
+  const uint32_t columns = closed ? nu : nu + 1;
+  if (counting_) {
+    vertex_count_ += uint64_t(columns) * (nv + 1);
+    triangle_count_ += uint64_t(nu) * nv * 2;
+    return;
+  }
+  const uint32_t first = uint32_t(vertex_count_);
+  for (uint32_t j = 0; j <= nv; ++j) {
+    for (uint32_t i = 0; i < columns; ++i) vertex(point(i, j));
+  }
+  for (uint32_t j = 0; j < nv; ++j) {
+    for (uint32_t i = 0; i < nu; ++i) {
+      const uint32_t a = first + j * columns, b = a + columns, k = closed && i + 1 == nu ? 0 : i + 1;
+      quad(a + i, a + k, b + k, b + i);
+    }
+  }
+}
 
 }  // namespace sightline

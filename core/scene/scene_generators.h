@@ -13,5 +13,7 @@ namespace sightline {
 
 std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed);
 std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed);
+std::vector<ScenePart> canyonParts(uint64_t triangles, uint64_t seed);
+std::vector<ViewCell> canyonCells(uint64_t triangles, uint64_t seed);
 
 }  // namespace sightline
