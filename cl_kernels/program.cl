@@ -1,2 +1,2 @@
 // The one OpenCL program: every kernel, in one translation unit. Build options choose the variant.
-#include "core/shared/stage_params.h"
+#include "cl_kernels/trace.cl"

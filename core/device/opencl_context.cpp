@@ -1,0 +1,196 @@
+#include "core/device/opencl_context.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cl_kernels/program_source.h"
+#include "core/device/opencl_devices.h"
+#include "core/error.h"
+
+namespace sightline {
+namespace {
+
+/// Names of the codes that users meet; others are told by number.
+const char* codeName(cl_int code) {
+  switch (code) {
+    case CL_DEVICE_NOT_AVAILABLE:
+      return "CL_DEVICE_NOT_AVAILABLE";
+    case CL_COMPILER_NOT_AVAILABLE:
+      return "CL_COMPILER_NOT_AVAILABLE";
+    case CL_MEM_OBJECT_ALLOCATION_FAILURE:
+      return "CL_MEM_OBJECT_ALLOCATION_FAILURE";
+    case CL_OUT_OF_RESOURCES:
+      return "CL_OUT_OF_RESOURCES";
+    case CL_OUT_OF_HOST_MEMORY:
+      return "CL_OUT_OF_HOST_MEMORY";
+    case CL_BUILD_PROGRAM_FAILURE:
+      return "CL_BUILD_PROGRAM_FAILURE";
+    case CL_INVALID_VALUE:
+      return "CL_INVALID_VALUE";
+    case CL_INVALID_BUFFER_SIZE:
+      return "CL_INVALID_BUFFER_SIZE";
+    case CL_INVALID_BUILD_OPTIONS:
+      return "CL_INVALID_BUILD_OPTIONS";
+    case CL_INVALID_KERNEL_NAME:
+      return "CL_INVALID_KERNEL_NAME";
+    case CL_INVALID_KERNEL_ARGS:
+      return "CL_INVALID_KERNEL_ARGS";
+    case CL_INVALID_ARG_INDEX:
+      return "CL_INVALID_ARG_INDEX";
+    case CL_INVALID_ARG_SIZE:
+      return "CL_INVALID_ARG_SIZE";
+    case CL_INVALID_ARG_VALUE:
+      return "CL_INVALID_ARG_VALUE";
+    case CL_INVALID_MEM_OBJECT:
+      return "CL_INVALID_MEM_OBJECT";
+    case CL_INVALID_WORK_GROUP_SIZE:
+      return "CL_INVALID_WORK_GROUP_SIZE";
+    case CL_INVALID_WORK_ITEM_SIZE:
+      return "CL_INVALID_WORK_ITEM_SIZE";
+    default:
+      return "OpenCL error";
+  }
+}
+
+std::string buildLog(cl_program program, cl_device_id device) {
+  size_t size = 0;
+  if (clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size) != CL_SUCCESS)
+    return {};
+  std::string log(size, '\0');
+  if (clGetProgramBuildInfo(program, device, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr) != CL_SUCCESS) {
+    return {};
+  }
+  while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) log.pop_back();
+  return log;
+}
+
+double mebibytes(uint64_t bytes) {
+  return double(bytes) / 1048576.0;
+}
+
+}  // namespace
+
+void checkCl(cl_int code, const char* call) {
+  if (code != CL_SUCCESS) throw Error(fmt::format("{} failed: {} ({})", call, codeName(code), code));
+}
+
+ClBuffer& ClBuffer::operator=(ClBuffer&& other) noexcept {
+  std::swap(memory_, other.memory_);
+  std::swap(bytes_, other.bytes_);
+  std::swap(total_, other.total_);
+  return *this;
+}
+
+ClBuffer::~ClBuffer() {
+  if (total_) *total_ -= bytes_;
+}
+
+OpenClContext::OpenClContext(const std::string& selector) {
+  const OpenClDevice device = selectOpenClDevice(selector);
+  device_ = device.id;
+  info_ = device.info;
+  is_cpu_ = (device.type & CL_DEVICE_TYPE_CPU) != 0;
+  max_allocation_ = clDeviceValue<cl_ulong>(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+  compute_units_ = clDeviceValue<cl_uint>(device_, CL_DEVICE_MAX_COMPUTE_UNITS);
+  cl_int code = CL_SUCCESS;
+  context_ =
+      ClHandle<cl_context, clReleaseContext>(clCreateContext(nullptr, 1, &device_, nullptr, nullptr, &code));
+  checkCl(code, "clCreateContext");
+  queue_ = ClHandle<cl_command_queue, clReleaseCommandQueue>(
+      clCreateCommandQueue(context_.get(), device_, 0, &code));
+  checkCl(code, "clCreateCommandQueue");
+}
+
+void OpenClContext::build(const std::string& options) {
+  cl_int code = CL_SUCCESS;
+  const char* source = kProgramSource;
+  program_ = ClHandle<cl_program, clReleaseProgram>(
+      clCreateProgramWithSource(context_.get(), 1, &source, nullptr, &code));
+  checkCl(code, "clCreateProgramWithSource");
+  const std::string all = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt " + options;
+  code = clBuildProgram(program_.get(), 1, &device_, all.c_str(), nullptr, nullptr);
+  if (code != CL_SUCCESS) {
+    throw Error(fmt::format("{} ({}) could not compile the kernels with \"{}\": {} ({})\n{}", info_.id,
+                            info_.name, all, codeName(code), code, buildLog(program_.get(), device_)));
+  }
+}
+
+ClKernel OpenClContext::kernel(const char* name) const {
+  cl_int code = CL_SUCCESS;
+  ClKernel kernel(clCreateKernel(program_.get(), name, &code));
+  checkCl(code, (std::string("clCreateKernel ") + name).c_str());
+  return kernel;
+}
+
+size_t OpenClContext::maxWorkGroup(const ClKernel& kernel) const {
+  size_t size = 0;
+  checkCl(
+      clGetKernelWorkGroupInfo(kernel.get(), device_, CL_KERNEL_WORK_GROUP_SIZE, sizeof size, &size, nullptr),
+      "clGetKernelWorkGroupInfo");
+  return size;
+}
+
+ClBuffer OpenClContext::buffer(uint64_t bytes, const char* what) {
+  bytes = std::max<uint64_t>(bytes, 16);
+  const std::string advice =
+      "; use the device cpu, a smaller scene or, with PoCL, a higher POCL_MEMORY_LIMIT (GiB)";
+  if (bytes > max_allocation_) {
+    throw Error(
+        fmt::format("{} ({}): the {} take {:.0f} MiB, more than the {:.0f} MiB that the device allows "
+                    "one buffer{}",
+                    info_.id, info_.name, what, mebibytes(bytes), mebibytes(max_allocation_), advice));
+  }
+  cl_int code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+  ClBuffer buffer;
+  if (*allocated_ + bytes <= info_.memory_bytes) {
+    buffer.memory_ = ClHandle<cl_mem, clReleaseMemObject>(
+        clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, bytes, nullptr, &code));
+  }
+  if (code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES) {
+    throw Error(fmt::format(
+        "{} ({}): the {} take {:.0f} MiB, but {:.0f} of the device's {:.0f} MiB are in use{}", info_.id,
+        info_.name, what, mebibytes(bytes), mebibytes(*allocated_), mebibytes(info_.memory_bytes), advice));
+  }
+  checkCl(code, "clCreateBuffer");
+  buffer.bytes_ = bytes;
+  buffer.total_ = allocated_;
+  *allocated_ += bytes;
+  return buffer;
+}
+
+void OpenClContext::write(const ClBuffer& buffer, const void* source, uint64_t bytes, uint64_t offset) {
+  if (bytes == 0) return;
+  checkCl(
+      clEnqueueWriteBuffer(queue_.get(), buffer.get(), CL_TRUE, offset, bytes, source, 0, nullptr, nullptr),
+      "clEnqueueWriteBuffer");
+}
+
+void OpenClContext::read(const ClBuffer& buffer, void* target, uint64_t bytes, uint64_t offset) {
+  if (bytes == 0) return;
+  checkCl(
+      clEnqueueReadBuffer(queue_.get(), buffer.get(), CL_TRUE, offset, bytes, target, 0, nullptr, nullptr),
+      "clEnqueueReadBuffer");
+}
+
+void OpenClContext::fill(const ClBuffer& buffer, uint32_t value, uint64_t bytes, uint64_t offset) {
+  if (bytes == 0) return;
+  checkCl(clEnqueueFillBuffer(queue_.get(), buffer.get(), &value, sizeof value, offset, bytes, 0, nullptr,
+                              nullptr),
+          "clEnqueueFillBuffer");
+}
+
+void OpenClContext::enqueue(const ClKernel& kernel, uint64_t global, uint32_t local) {
+  if (global == 0) return;
+  const size_t local_size = local;
+  const size_t global_size = local ? (global + local - 1) / local * local : global;
+  checkCl(clEnqueueNDRangeKernel(queue_.get(), kernel.get(), 1, nullptr, &global_size,
+                                 local ? &local_size : nullptr, 0, nullptr, nullptr),
+          "clEnqueueNDRangeKernel");
+}
+
+void OpenClContext::finish() {
+  checkCl(clFinish(queue_.get()), "clFinish");
+}
+
+}  // namespace sightline

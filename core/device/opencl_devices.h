@@ -1,0 +1,28 @@
+#pragma once
+// Which OpenCL devices there are; used by opencl_context.cpp.
+#include "core/device/opencl_context.h"
+
+namespace sightline {
+
+/// A device found, and what decides whether and how it is used.
+struct OpenClDevice {
+  cl_device_id id = nullptr;
+  cl_device_type type = 0;
+  DeviceInfo info;
+};
+
+/// All devices of all platforms; a platform that fails to answer is left out.
+std::vector<OpenClDevice> findOpenClDevices();
+
+/// The device for a selector (see OpenClContext). Throws Error.
+OpenClDevice selectOpenClDevice(const std::string& selector);
+
+/// A fixed-size property of a device.
+template <typename T>
+T clDeviceValue(cl_device_id device, cl_device_info property) {
+  T value{};
+  checkCl(clGetDeviceInfo(device, property, sizeof value, &value, nullptr), "clGetDeviceInfo");
+  return value;
+}
+
+}  // namespace sightline

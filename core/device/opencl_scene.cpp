@@ -1,0 +1,65 @@
+#include "core/device/opencl_scene.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "core/device/trace_layout.h"
+#include "core/shared/box.h"
+
+namespace sightline {
+namespace {
+
+/// Records packed and uploaded at a time.
+constexpr size_t kPieceRecords = 1 << 18;
+
+void addToId(TriangleRecord& record, uint32_t offset) {
+  record.id += offset;
+}
+
+void addToId(TriangleRecordGpu& record, uint32_t offset) {
+  record.vertices[0][3] = std::bit_cast<float>(std::bit_cast<uint32_t>(record.vertices[0][3]) + offset);
+}
+
+template <typename Record>
+ClBuffer uploadTriangles(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t id_offset) {
+  const size_t count = bvh.references.size();
+  ClBuffer buffer = context.buffer(count * sizeof(Record), "triangles of the scene");
+  std::vector<Record> piece(std::min(count, kPieceRecords));
+  for (size_t first = 0; first < count; first += piece.size()) {
+    const std::span<Record> records(piece.data(), std::min(piece.size(), count - first));
+    packTriangles(scene, bvh, first, records);
+    if (id_offset != 0) {
+      for (Record& record : records) addToId(record, id_offset);
+    }
+    context.write(buffer, records.data(), records.size_bytes(), first * sizeof(Record));
+  }
+  return buffer;
+}
+
+}  // namespace
+
+uint32_t raysPerItem(const OpenClContext& context) {
+  return context.isCpu() ? 8 : 1;
+}
+
+std::string traceOptions(const OpenClContext& context) {
+  return "-DSL_PACKET=" + std::to_string(raysPerItem(context));
+}
+
+OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh) {
+  return uploadScene(context, scene, bvh, 0);
+}
+
+OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t id_offset) {
+  checkTraceable(bvh);
+  OpenClScene result;
+  result.reach = sceneReach(bvh.low, bvh.high);
+  const uint64_t node_bytes = bvh.nodes2.size() * sizeof(BvhNode2);
+  result.nodes = context.buffer(node_bytes, "nodes of the tree");
+  context.write(result.nodes, bvh.nodes2.data(), node_bytes);
+  result.triangles = context.isCpu() ? uploadTriangles<TriangleRecord>(context, scene, bvh, id_offset)
+                                     : uploadTriangles<TriangleRecordGpu>(context, scene, bvh, id_offset);
+  return result;
+}
+
+}  // namespace sightline

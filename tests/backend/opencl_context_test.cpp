@@ -1,0 +1,97 @@
+// Choosing devices, and what is said when something does not fit.
+#include "core/device/opencl_context.h"
+
+#include <gtest/gtest.h>
+
+#include "core/error.h"
+
+namespace sightline {
+namespace {
+
+std::string errorOf(const std::string& selector) {
+  try {
+    OpenClContext context(selector);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+class OpenCl : public testing::Test {
+ protected:
+  void SetUp() override {
+    devices_ = listOpenClDevices();
+    if (devices_.empty()) GTEST_SKIP() << "no OpenCL device";
+  }
+  std::vector<DeviceInfo> devices_;
+};
+
+TEST_F(OpenCl, IsSelectedByIndexAndByPartOfItsName) {
+  EXPECT_EQ(OpenClContext("opencl:0").info().name, devices_[0].name);
+  EXPECT_EQ(devices_[0].id, "opencl:0");
+  std::string part = devices_[0].name.substr(1, 8);
+  for (char& c : part) c = char(std::toupper(static_cast<unsigned char>(c)));
+  EXPECT_EQ(OpenClContext("opencl:" + part).info().id, "opencl:0");
+}
+
+TEST_F(OpenCl, UnknownSelectorsAreToldWhatThereIs) {
+  for (const char* selector : {"opencl:99", "opencl:no such name", "opencl:-1", "opencl:0x"}) {
+    const std::string error = errorOf(selector);
+    EXPECT_NE(error.find(selector), std::string::npos) << error;
+    EXPECT_NE(error.find(devices_[0].name), std::string::npos) << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+  for (const char* selector : {"opencl:", "openclx", "cpu", ""}) {
+    EXPECT_NE(errorOf(selector).find("expected opencl"), std::string::npos) << selector;
+  }
+}
+
+TEST_F(OpenCl, TooLargeBuffersSayWhatWasNeededAndWhatThereIs) {
+  OpenClContext context("opencl");
+  try {
+    context.buffer(context.maxAllocationBytes() + 1, "triangles of the scene");
+    FAIL() << "expected an Error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("triangles of the scene take"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_EQ(context.allocatedBytes(), 0u);
+}
+
+TEST_F(OpenCl, CountsTheBytesOfItsBuffers) {
+  OpenClContext context("opencl");
+  {
+    ClBuffer a = context.buffer(1000, "a"), b = context.buffer(64, "b");
+    EXPECT_EQ(context.allocatedBytes(), 1064u);
+    a = std::move(b);
+  }
+  EXPECT_EQ(context.allocatedBytes(), 0u);
+}
+
+TEST_F(OpenCl, AFailedBuildShowsItsLog) {
+  OpenClContext context("opencl");
+  try {
+    context.build("-DSL_PACKET=nonsense");
+    FAIL() << "expected an Error";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("nonsense"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("error:"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(OpenCl, BytesComeBackAsWritten) {
+  OpenClContext context("opencl");
+  const ClBuffer buffer = context.buffer(16, "numbers");
+  const uint32_t written[2] = {1, 2};
+  context.fill(buffer, 7, 16);
+  context.write(buffer, written, 8, 4);
+  uint32_t read[4] = {};
+  context.read(buffer, read, 16);
+  EXPECT_EQ(read[0], 7u);
+  EXPECT_EQ(read[1], 1u);
+  EXPECT_EQ(read[2], 2u);
+  EXPECT_EQ(read[3], 7u);
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,95 @@
+// OpenCL's hits, bit by bit those of the reference.
+#include <gtest/gtest.h>
+
+#include "core/device/cpu_tracer.h"
+#include "core/device/opencl_scene.h"
+#include "core/error.h"
+#include "core/gvs/random_segment.h"
+#include "core/shared/random_ray.h"
+#include "tests/backend/trace_cases.h"
+
+namespace sightline {
+namespace {
+
+/// Skips where there is no OpenCL device at all; build.sh installs PoCL, so that CI never skips.
+class OpenClTrace : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (listOpenClDevices().empty()) GTEST_SKIP() << "no OpenCL device";
+    context_ = std::make_unique<OpenClContext>("opencl");
+    context_->build(traceOptions(*context_));
+  }
+
+  std::vector<Hit> trace(const OpenClScene& scene, const std::vector<Ray>& rays, uint32_t local) {
+    const ClKernel kernel = context_->kernel("traceRaysKernel");
+    const ClBuffer ray_buffer = context_->buffer(rays.size() * sizeof(Ray), "rays");
+    const ClBuffer hit_buffer = context_->buffer(rays.size() * sizeof(Hit), "hits");
+    context_->write(ray_buffer, rays.data(), rays.size() * sizeof(Ray));
+    const uint32_t per_item = raysPerItem(*context_), count = uint32_t(rays.size());
+    context_->launch(kernel, (count + per_item - 1) / per_item, local, scene.nodes, scene.triangles,
+                     scene.reach, ray_buffer, hit_buffer, count);
+    std::vector<Hit> hits(count);
+    context_->read(hit_buffer, hits.data(), count * sizeof(Hit));
+    return hits;
+  }
+
+  std::unique_ptr<OpenClContext> context_;
+};
+
+TEST_F(OpenClTrace, GivesTheHitsOfTheReferenceWhateverTheTree) {
+  for (const TraceCase& c : traceCases()) {
+    for (const BvhConfig& config : traceConfigs()) {
+      const Bvh bvh = buildBvh(c.scene.positions, c.scene.triangles, config);
+      const CpuTracer reference(c.scene, bvh);
+      const OpenClScene scene = uploadScene(*context_, c.scene, bvh);
+      const std::vector<Hit> hits = trace(scene, c.rays, 8);
+      for (size_t i = 0; i < hits.size(); ++i) {
+        ASSERT_PRED_FORMAT2(sameHit, hits[i], reference.trace(c.rays[i]))
+            << c.name << ", ray " << i << " " << describeRay(c.rays[i]) << ", leaf size "
+            << config.max_leaf_size << ", spatial splits " << config.spatial_splits;
+      }
+    }
+  }
+}
+
+TEST_F(OpenClTrace, IdsPast2To24StayWhole) {
+  const TraceCase& c = traceCases().front();
+  const Bvh bvh = buildBvh(c.scene.positions, c.scene.triangles);
+  const CpuTracer reference(c.scene, bvh);
+  const uint32_t offset = (1u << 24) + 1;
+  const std::vector<Hit> hits = trace(uploadScene(*context_, c.scene, bvh, offset), c.rays, 8);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    Hit expected = reference.trace(c.rays[i]);
+    if (expected.triangle != kNoTriangle) expected.triangle += offset;
+    ASSERT_PRED_FORMAT2(sameHit, hits[i], expected) << describeRay(c.rays[i]);
+  }
+}
+
+TEST_F(OpenClTrace, SegmentsGiveEachRayItsHit) {
+  const TraceCase& c = traceCases().front();
+  const Bvh bvh = buildBvh(c.scene.positions, c.scene.triangles);
+  const CpuTracer reference(c.scene, bvh);
+  const OpenClScene scene = uploadScene(*context_, c.scene, bvh);
+  Face face{};
+  face.corner = vec4(-0.5f, -0.5f, 0, 0);
+  face.edge_u = face.axis_u = vec4(1, 0, 0, 0);
+  face.edge_v = face.axis_v = vec4(0, 1, 0, 0);
+  face.normal = vec4(0, 0, 1, 0);
+  const uvec4 shifts(123456789u, 1234567890u, 99u, 1000000007u);
+  const uint32_t count = 30011;
+  const RandomSegment segment = makeRandomSegment(0, 5'000'000'000, count, 1);
+  const ClBuffer buffer = context_->buffer(count * sizeof(Hit), "hits");
+  context_->fill(buffer, 0xdeadbeef, count * sizeof(Hit));
+  const uint64_t per_item = raysPerItem(*context_);
+  context_->launch(context_->kernel("traceSegmentKernel"), (slotCount(segment) + per_item - 1) / per_item, 8,
+                   scene.nodes, scene.triangles, scene.reach, segment, face, shifts, buffer);
+  std::vector<Hit> hits(count);
+  context_->read(buffer, hits.data(), count * sizeof(Hit));
+  for (uint32_t i = 0; i < count; ++i) {
+    const Ray ray = randomRay(5'000'000'000 + i, face, shifts);
+    ASSERT_PRED_FORMAT2(sameHit, hits[i], reference.trace(ray)) << i << " " << describeRay(ray);
+  }
+}
+
+}  // namespace
+}  // namespace sightline
