@@ -13,6 +13,7 @@
 #include "bvh/binning.h"
 #include "bvh/bvh.h"
 #include "bvh/partition.h"
+#include "bvh/spatial.h"
 #include "bvh/subtree.h"
 
 namespace sightline {
@@ -21,12 +22,18 @@ namespace {
 
 /// Nodes of at most so many references are built by one thread, with all that is below them.
 constexpr uint32_t kPieceSize = 4096;
+/// Larger nodes are binned and partitioned by many threads, in chunks.
+constexpr uint32_t kParallelSize = 2 * kChunk;
 /// From this depth on nodes are halved by count: log2(2^32) = 32 levels reach single references.
 constexpr uint32_t kHalvingDepth = 64;
 
-/// A node to be built: references [begin, end) of one of the two arrays.
+/// A node with a smaller share of the root's surface than this for its children's overlap is not split
+/// spatially (Stich et al., section 4.5).
+constexpr float kLeastOverlap = 1e-5f;
+
+/// A node to be built: references [begin, end) of one of the two arrays, and room for `extra` more behind.
 struct Range {
-  uint32_t begin, end, depth;
+  uint32_t begin, end, extra, depth;
   int array;
   Box box, centroids;
 
@@ -37,7 +44,7 @@ class Builder {
  public:
   Builder(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
           const BvhConfig& config)
-      : positions_(positions), triangles_(triangles), config_(config) {}
+      : positions_(positions), triangles_(triangles), config_(config), scene_{positions, triangles, {}} {}
 
   void run(Bvh& bvh);
 
@@ -45,9 +52,14 @@ class Builder {
   void makeReferences();
   std::unique_ptr<TreePart> build(const Range& range);
   bool split(const Range& range, Range& left, Range& right);
-  ObjectSplit findSplitSerial(const Range& range, const BinMapping& mapping);
-  ObjectSplit findSplitParallel(const Range& range, const BinMapping& mapping,
-                                std::vector<uint32_t>& left_of_chunk);
+  ObjectSplit findObject(const Range& range, const BinMapping& mapping, std::vector<uint32_t>& left_of_chunk);
+  bool worthSpatial(const Range& range, const ObjectSplit& object) const;
+  SpatialSplit findSpatial(const Range& range);
+  bool cutSpatial(const Range& range, const SpatialSplit& split, Range& left, Range& right);
+  void cutObject(const Range& range, ObjectSplit& split, const BinMapping& mapping,
+                 const std::vector<uint32_t>& left_of_chunk, Range& left, Range& right);
+  void shareRoom(const Range& range, uint32_t remaining, Range& left, Range& right);
+  void makeRoom(const Range& left, Range& right);
   void buildPiece(const Range& range, TreePart& part);
   uint32_t addNode(const Range& range, const Range& left, const Range& right, TreePart& part, uint32_t depth);
   void addChild(uint32_t node, int i, const Range& range, TreePart& part, uint32_t depth);
@@ -57,7 +69,9 @@ class Builder {
   std::span<const glm::vec3> positions_;
   std::span<const glm::uvec3> triangles_;
   BvhConfig config_;
+  Triangles scene_;
   Measure measure_;
+  float root_area_ = 0;
   std::unique_ptr<Reference[]> array_[2];
   Range root_{};
 };
@@ -68,14 +82,18 @@ glm::vec3 withoutNegativeZero(glm::vec3 p) {
 
 void Builder::makeReferences() {
   const uint32_t n = static_cast<uint32_t>(triangles_.size());
-  array_[0] = std::make_unique_for_overwrite<Reference[]>(n);
+  const double share = config_.spatial_splits ? std::clamp(config_.split_budget, 0.0f, 1.0f) : 0;
+  const uint32_t extra = static_cast<uint32_t>(std::min(n * share, 4294967295.0 - n));
+  for (int i = 0; i < (n > kPieceSize ? 2 : 1); ++i) {
+    array_[i] = std::make_unique_for_overwrite<Reference[]>(size_t{n} + extra);
+  }
   using Blocks = tbb::blocked_range<uint32_t>;
   const auto unite = [](Box a, const Box& b) {
     a.grow(b);
     return a;
   };
   Reference* references = array_[0].get();
-  root_ = {0, n, 0, 0, {}, {}};
+  root_ = {0, n, extra, 0, 0, {}, {}};
   root_.box = tbb::parallel_reduce(
       Blocks(0, n, kChunk), Box(),
       [&](const Blocks& block, Box box) {
@@ -98,6 +116,8 @@ void Builder::makeReferences() {
   std::frexp(largest, &exponent);
   // 2^-127 and less are not normal numbers, 2^128 is none at all.
   measure_.scale = splat4(std::ldexp(1.0f, std::clamp(-exponent, -126, 127)));
+  scene_.measure = measure_;
+  root_area_ = measure_.halfArea(root_.box);
   root_.centroids = tbb::parallel_reduce(
       Blocks(0, n, kChunk), Box(),
       [&](const Blocks& block, Box box) {
@@ -110,19 +130,19 @@ void Builder::makeReferences() {
       unite);
 }
 
-ObjectSplit Builder::findSplitSerial(const Range& range, const BinMapping& mapping) {
-  Bins bins;
-  bins.add(at(range), range.size(), mapping, measure_);
-  return findObjectSplit(bins, mapping, measure_);
-}
-
-ObjectSplit Builder::findSplitParallel(const Range& range, const BinMapping& mapping,
-                                       std::vector<uint32_t>& left_of_chunk) {
-  const uint32_t chunks = (range.size() + kChunk - 1) / kChunk;
+/// left_of_chunk: see partitionParallel; stays empty if one thread does it all.
+ObjectSplit Builder::findObject(const Range& range, const BinMapping& mapping,
+                                std::vector<uint32_t>& left_of_chunk) {
+  const uint32_t n = range.size();
+  if (n <= kParallelSize) {
+    Bins bins;
+    bins.add(at(range), n, mapping, measure_);
+    return findObjectSplit(bins, mapping, measure_);
+  }
+  const uint32_t chunks = (n + kChunk - 1) / kChunk;
   std::vector<Bins> bins(chunks);
   tbb::parallel_for(0u, chunks, [&](uint32_t c) {
-    const uint32_t begin = c * kChunk;
-    bins[c].add(at(range) + begin, std::min(kChunk, range.size() - begin), mapping, measure_);
+    bins[c].add(at(range) + c * kChunk, std::min(kChunk, n - c * kChunk), mapping, measure_);
   });
   Bins all = bins[0];
   for (uint32_t c = 1; c < chunks; ++c) all.merge(bins[c], mapping.bins);
@@ -134,36 +154,110 @@ ObjectSplit Builder::findSplitParallel(const Range& range, const BinMapping& map
   return split;
 }
 
+bool Builder::worthSpatial(const Range& range, const ObjectSplit& object) const {
+  if (range.extra == 0 || range.depth >= kHalvingDepth) return false;
+  if (object.axis < 0) return true;
+  const Box overlap{max4(object.left.low, object.right.low), min4(object.left.high, object.right.high)};
+  return !overlap.isEmpty() && measure_.halfArea(overlap) > kLeastOverlap * root_area_;
+}
+
+SpatialSplit Builder::findSpatial(const Range& range) {
+  const uint32_t n = range.size();
+  const SpatialMapping mapping(range.box, measure_);
+  const uint32_t chunks = (n + kChunk - 1) / kChunk;
+  if (chunks == 1) {
+    SpatialBins bins;
+    bins.add(at(range), n, mapping, scene_);
+    return findSpatialSplit(bins, mapping, n, range.extra, measure_);
+  }
+  std::vector<SpatialBins> bins(chunks);
+  tbb::parallel_for(0u, chunks, [&](uint32_t c) {
+    bins[c].add(at(range) + c * kChunk, std::min(kChunk, n - c * kChunk), mapping, scene_);
+  });
+  for (uint32_t c = 1; c < chunks; ++c) bins[0].merge(bins[c]);
+  return findSpatialSplit(bins[0], mapping, n, range.extra, measure_);
+}
+
 /// False: the range is a leaf.
 bool Builder::split(const Range& range, Range& left, Range& right) {
   const uint32_t n = range.size();
   if (n == 1) return false;
   const BinMapping mapping(range.centroids, n);
-  const bool parallel = n > 2 * kChunk;
   std::vector<uint32_t> left_of_chunk;
-  ObjectSplit s;
-  if (range.depth < kHalvingDepth) {
-    s = parallel ? findSplitParallel(range, mapping, left_of_chunk) : findSplitSerial(range, mapping);
-  }
+  ObjectSplit object;
+  SpatialSplit spatial;
+  if (range.depth < kHalvingDepth) object = findObject(range, mapping, left_of_chunk);
+  if (worthSpatial(range, object)) spatial = findSpatial(range);
+  if (object.axis >= 0 && spatial.axis >= 0 && spatial.cost >= object.cost) spatial.axis = -1;
   if (n <= config_.max_leaf_size) {
     const float area = measure_.halfArea(range.box);
-    if (s.axis < 0 || area * leafCost(n) <= area + s.cost) return false;
+    if (object.axis < 0 && spatial.axis < 0) return false;
+    if (area * leafCost(n) <= area + (spatial.axis < 0 ? object.cost : spatial.cost)) return false;
   }
-  SideCentroids sides;
-  int array = range.array;
-  if (s.axis < 0) {
-    sides = partitionMedian(at(range), n, range.centroids, measure_, s);
-  } else if (parallel) {
-    array = 1 - array;
-    sides = partitionParallel(at(range), array_[array].get() + range.begin, n, mapping, s, measure_,
-                              left_of_chunk);
-  } else {
-    sides = partitionInPlace(at(range), n, mapping, s, measure_);
-  }
-  const uint32_t middle = range.begin + s.left_count;
-  left = {range.begin, middle, range.depth + 1, array, s.left, sides.left};
-  right = {middle, range.end, range.depth + 1, array, s.right, sides.right};
+  if (spatial.axis >= 0 && cutSpatial(range, spatial, left, right)) return true;
+  cutObject(range, object, mapping, left_of_chunk, left, right);
   return true;
+}
+
+/// Shares out the room behind the references; they still lie without a gap.
+void Builder::shareRoom(const Range& range, uint32_t remaining, Range& left, Range& right) {
+  left.extra = leftShare(remaining, left.size(), right.size());
+  right.extra = remaining - left.extra;
+  left.depth = right.depth = range.depth + 1;
+}
+
+void Builder::makeRoom(const Range& left, Range& right) {
+  Reference* const first = at(right);
+  const uint32_t moved = std::min(left.extra, right.size());
+  std::copy_backward(first, first + moved, first + right.size() + left.extra);
+  right.begin += left.extra;
+  right.end += left.extra;
+}
+
+bool Builder::cutSpatial(const Range& range, const SpatialSplit& split, Range& left, Range& right) {
+  const uint32_t n = range.size();
+  const bool parallel = n > kParallelSize;
+  const int array = parallel ? 1 - range.array : range.array;
+  const SpatialSides s = parallel ? partitionSpatialParallel(at(range), array_[array].get() + range.begin, n,
+                                                             range.extra, split, scene_)
+                                  : partitionSpatialInPlace(at(range), n, split, scene_);
+  if (s.left_count == 0 || s.right_count == 0) return false;
+  left = {range.begin, range.begin + s.left_count, 0, 0, array, s.left, s.centroids.left};
+  right = {left.end, left.end + s.right_count, 0, 0, array, s.right, s.centroids.right};
+  shareRoom(range, range.extra - (s.left_count + s.right_count - n), left, right);
+  if (parallel) {
+    right.begin += left.extra;
+    right.end += left.extra;
+  } else {
+    makeRoom(left, right);
+  }
+  return true;
+}
+
+void Builder::cutObject(const Range& range, ObjectSplit& split, const BinMapping& mapping,
+                        const std::vector<uint32_t>& left_of_chunk, Range& left, Range& right) {
+  const uint32_t n = range.size();
+  const bool median = split.axis < 0;
+  const bool parallel = !median && n > kParallelSize;
+  const int array = parallel ? 1 - range.array : range.array;
+  SideCentroids sides;
+  if (median) {
+    sides = partitionMedian(at(range), n, range.centroids, measure_, split);
+  } else if (!parallel) {
+    sides = partitionInPlace(at(range), n, mapping, split, measure_);
+  }
+  left = {range.begin, range.begin + split.left_count, 0, 0, array, split.left, sides.left};
+  right = {left.end, range.end, 0, 0, array, split.right, sides.right};
+  shareRoom(range, range.extra, left, right);
+  if (!parallel) {
+    makeRoom(left, right);
+    return;
+  }
+  right.begin += left.extra;
+  right.end += left.extra;
+  sides = partitionParallel(at(range), n, at(left), at(right), mapping, split, measure_, left_of_chunk);
+  left.centroids = sides.left;
+  right.centroids = sides.right;
 }
 
 std::unique_ptr<TreePart> Builder::build(const Range& range) {
@@ -221,7 +315,6 @@ uint32_t Builder::addLeaf(const Range& range, TreePart& part) {
 
 void Builder::run(Bvh& bvh) {
   makeReferences();
-  if (root_.size() > 2 * kChunk) array_[1] = std::make_unique_for_overwrite<Reference[]>(root_.size());
   std::unique_ptr<TreePart> root = build(root_);
   array_[0].reset();
   array_[1].reset();

@@ -40,9 +40,9 @@ SideCentroids partitionInPlace(Reference* references, uint32_t count, const BinM
   return sides;
 }
 
-SideCentroids partitionParallel(const Reference* references, Reference* target, uint32_t count,
-                                const BinMapping& mapping, const ObjectSplit& split, const Measure& measure,
-                                const std::vector<uint32_t>& left_of_chunk) {
+SideCentroids partitionParallel(const Reference* references, uint32_t count, Reference* left,
+                                Reference* right, const BinMapping& mapping, const ObjectSplit& split,
+                                const Measure& measure, const std::vector<uint32_t>& left_of_chunk) {
   const uint32_t chunks = static_cast<uint32_t>(left_of_chunk.size());
   std::vector<uint32_t> left_start(chunks);
   uint32_t sum = 0;
@@ -53,8 +53,8 @@ SideCentroids partitionParallel(const Reference* references, Reference* target, 
   std::vector<SideCentroids> sides(chunks);
   tbb::parallel_for(0u, chunks, [&](uint32_t c) {
     const uint32_t begin = c * kChunk, end = std::min(count, begin + kChunk);
-    Reference* l = target + left_start[c];
-    Reference* r = target + split.left_count + (begin - left_start[c]);
+    Reference* l = left + left_start[c];
+    Reference* r = right + (begin - left_start[c]);
     SideCentroids s;
     for (uint32_t i = begin; i < end; ++i) {
       const Float4 centroid = measure.centroid(references[i]);

@@ -20,11 +20,11 @@ struct SideCentroids {
 SideCentroids partitionInPlace(Reference* references, uint32_t count, const BinMapping& mapping,
                                const ObjectSplit& split, const Measure& measure);
 
-/// Copies references[0..count) to target[0..count), those left of the cut first, by all threads of the
-/// current arena. left_of_chunk: for each chunk of kChunk references, how many lie left.
-SideCentroids partitionParallel(const Reference* references, Reference* target, uint32_t count,
-                                const BinMapping& mapping, const ObjectSplit& split, const Measure& measure,
-                                const std::vector<uint32_t>& left_of_chunk);
+/// Copies references[0..count) to left and right, by all threads of the current arena. left_of_chunk: for
+/// each chunk of kChunk references, how many lie left.
+SideCentroids partitionParallel(const Reference* references, uint32_t count, Reference* left,
+                                Reference* right, const BinMapping& mapping, const ObjectSplit& split,
+                                const Measure& measure, const std::vector<uint32_t>& left_of_chunk);
 
 /// Cuts into halves by count, at the median of the centroids along the widest axis: always possible.
 SideCentroids partitionMedian(Reference* references, uint32_t count, const Box& centroids,
