@@ -24,6 +24,10 @@ namespace {
 constexpr uint32_t kPieceSize = 4096;
 /// Larger nodes are binned and partitioned by many threads, in chunks.
 constexpr uint32_t kParallelSize = 2 * kChunk;
+/// What visiting one more node costs in triangle tests, where a leaf could end the path instead. Tracers
+/// test a leaf's triangles four or eight at once, so small leaves do not pay: at 2 instead of 1, SAH cost
+/// (with both costs at 1) grows by 0.5 % on a city and the nodes of a soup shrink by a third.
+constexpr float kNodeCost = 2.0f;
 /// From this depth on nodes are halved by count: log2(2^32) = 32 levels reach single references.
 constexpr uint32_t kHalvingDepth = 64;
 
@@ -187,12 +191,12 @@ bool Builder::split(const Range& range, Range& left, Range& right) {
   ObjectSplit object;
   SpatialSplit spatial;
   if (range.depth < kHalvingDepth) object = findObject(range, mapping, left_of_chunk);
-  if (worthSpatial(range, object)) spatial = findSpatial(range);
+  if (n > config_.max_leaf_size && worthSpatial(range, object)) spatial = findSpatial(range);
   if (object.axis >= 0 && spatial.axis >= 0 && spatial.cost >= object.cost) spatial.axis = -1;
   if (n <= config_.max_leaf_size) {
     const float area = measure_.halfArea(range.box);
     if (object.axis < 0 && spatial.axis < 0) return false;
-    if (area * leafCost(n) <= area + (spatial.axis < 0 ? object.cost : spatial.cost)) return false;
+    if (area * leafCost(n) <= area * kNodeCost + (spatial.axis < 0 ? object.cost : spatial.cost)) return false;
   }
   if (spatial.axis >= 0 && cutSpatial(range, spatial, left, right)) return true;
   cutObject(range, object, mapping, left_of_chunk, left, right);
