@@ -48,10 +48,12 @@ glm::vec3 facingNormal(const Scene& scene, uint32_t triangle, glm::vec3 directio
 }
 
 float lightOn(glm::vec3 normal, glm::vec3 direction, glm::vec3 to_sun, float sunlit) {
-  const float sky = 0.34f + 0.16f * normal.y;
-  const float sun = 0.85f * std::max(0.0f, glm::dot(normal, to_sun)) * sunlit;
-  const float viewer = 0.14f * std::max(0.0f, -glm::dot(normal, direction));
-  return sky + sun + viewer;
+  const glm::vec3 from_behind = glm::normalize(glm::vec3(-to_sun.x, 0.1f * to_sun.y, -0.5f * to_sun.z));
+  const float sky = 0.27f + 0.14f * normal.y;
+  const float sun = 0.9f * std::max(0.0f, glm::dot(normal, to_sun)) * sunlit;
+  const float fill = 0.16f * std::max(0.0f, glm::dot(normal, from_behind));
+  const float viewer = 0.12f * std::max(0.0f, -glm::dot(normal, direction));
+  return sky + sun + fill + viewer;
 }
 
 Ray makeRay(glm::vec3 origin, glm::vec3 direction) {

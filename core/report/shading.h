@@ -27,8 +27,9 @@ std::vector<uint8_t> membership(const Scene& scene, std::span<const uint32_t> tr
 /// Unit normal of a triangle on the side that `direction` comes from; -direction for a degenerate one.
 glm::vec3 facingNormal(const Scene& scene, uint32_t triangle, glm::vec3 direction);
 
-/// Light on a surface: sky from above, a sun (shadowed where sunlit is 0), a little from the viewer.
-/// to_sun, normal and direction are unit vectors.
+/// Light on a surface: sky from above, a sun (shadowed where sunlit is 0), a little from the sun's other side
+/// and from the viewer, so that no two sides of a house look alike. to_sun, normal and direction are unit
+/// vectors.
 float lightOn(glm::vec3 normal, glm::vec3 direction, glm::vec3 to_sun, float sunlit);
 
 /// A ray from `origin`; a zero direction marks a sample that shows nothing.
