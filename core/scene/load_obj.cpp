@@ -156,8 +156,8 @@ class ObjReader {
       if (corner >= vertices_so_far_ && !all_vertices_known_) throw ForwardReference();
       corners_.push_back(corner);
     }
-    builder_.addPolygon(
-        corners_, [this] { return place(); }, 1);
+    const VertexRange vertices{0, int64_t(builder_.positionCount()), 1};
+    builder_.addPolygon(corners_, vertices, [this] { return place(); });
   }
 
   /// Whether a number has ten digits or more: the library would wrap it around.
@@ -205,7 +205,8 @@ class ObjReader {
 
 }  // namespace
 
-Scene loadObj(FileBytes bytes, const std::string& name, const SceneLoadOptions& options) {
+Scene loadObj(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
+  const std::string name = file.string();
   return ObjReader(bytes, name, options).read();
 }
 

@@ -4,8 +4,10 @@
 
 namespace sightline {
 
-/// One loader a format, for loadScene. `bytes` is the whole file and may be changed; `name` is the file's
-/// name in messages. All throw Error.
-Scene loadObj(FileBytes bytes, const std::string& name, const SceneLoadOptions& options);
+/// One loader a format, for loadScene. `bytes` is the whole file, not empty, and may be changed; `file` is
+/// its name, for messages and for files beside it. All throw Error.
+Scene loadObj(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options);
+Scene loadGltf(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options);
+Scene loadGlb(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options);
 
 }  // namespace sightline

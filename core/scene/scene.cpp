@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <limits>
+#include <map>
 #include <memory>
 
 #include "core/error.h"
@@ -16,19 +17,21 @@
 namespace sightline {
 
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options) {
-  const std::string name = file.string();
+  using Loader = Scene (*)(FileBytes, const std::filesystem::path&, const SceneLoadOptions&);
+  static const std::map<std::string, Loader> loaders = {
+      {".obj", loadObj}, {".gltf", loadGltf}, {".glb", loadGlb}};
   const std::string extension = lowerExtension(file);
-  const bool known = extension == ".obj";
-  if (!known) {
-    throw Error(
-        fmt::format("{}: unknown extension \"{}\", expected .obj, .gltf, .glb or .ply", name, extension));
+  const auto loader = loaders.find(extension);
+  if (loader == loaders.end()) {
+    throw Error(fmt::format("{}: unknown extension \"{}\", expected .obj, .gltf, .glb or .ply", file.string(),
+                            extension));
   }
   FileBytes bytes = readFile(file);
-  if (bytes.size == 0) throw Error(fmt::format("{}: is empty", name));
+  if (bytes.size == 0) throw Error(fmt::format("{}: is empty", file.string()));
   try {
-    return loadObj(std::move(bytes), name, options);
+    return loader->second(std::move(bytes), file, options);
   } catch (const std::bad_alloc&) {
-    throw Error(fmt::format("{}: does not fit into memory", name));
+    throw Error(fmt::format("{}: does not fit into memory", file.string()));
   }
 }
 

@@ -104,19 +104,20 @@ void SceneBuilder::beginObject(std::string_view name, const std::string& fallbac
   if (object_.name.empty()) object_.name = fallback;
 }
 
-bool SceneBuilder::usable(std::span<const int64_t> corners, const Place& place, int64_t first_number) const {
-  const auto count = int64_t(scene_.positions.size());
+bool SceneBuilder::usable(std::span<const int64_t> corners, const VertexRange& vertices,
+                          const Place& place) const {
   if (corners.size() < 3) {
     if (repair_) return false;
     throw Error(fmt::format("{}: face has {} vertices, needs at least 3; --repair drops it", place(),
                             corners.size()));
   }
   for (const int64_t corner : corners) {
-    if (corner >= 0 && corner < count && !isBadVertex(corner)) continue;
+    if (corner >= 0 && corner < vertices.count && !isBadVertex(vertices.first + corner)) continue;
     if (repair_) return false;
-    if (count == 0) throw Error(fmt::format("{}: face without any vertex in the file before it", place()));
+    if (vertices.count == 0) throw Error(fmt::format("{}: face without any vertex in the file", place()));
     throw Error(fmt::format("{}: vertex index {} is out of range {}..{}; --repair drops the face", place(),
-                            corner + first_number, first_number, count - 1 + first_number));
+                            corner + vertices.number_of_first, vertices.number_of_first,
+                            vertices.count - 1 + vertices.number_of_first));
   }
   return true;
 }
@@ -126,23 +127,25 @@ void SceneBuilder::addTriangle(const glm::uvec3& triangle, const Place& place) {
   scene_.triangles.push_back(triangle);
 }
 
-void SceneBuilder::addPolygon(std::span<const int64_t> corners, const Place& place, int64_t first_number) {
-  if (!usable(corners, place, first_number)) {
+void SceneBuilder::addPolygon(std::span<const int64_t> corners, const VertexRange& vertices,
+                              const Place& place) {
+  if (!usable(corners, vertices, place)) {
     scene_.repaired_triangles += corners.size() < 3 ? 1 : corners.size() - 2;
     return;
   }
+  const auto vertex = [&](size_t corner) { return uint32_t(vertices.first + corners[corner]); };
   if (corners.size() == 3) {
-    addTriangle(glm::uvec3(corners[0], corners[1], corners[2]), place);
+    addTriangle({vertex(0), vertex(1), vertex(2)}, place);
     return;
   }
   corners_.clear();
   cut_.clear();
-  for (const int64_t corner : corners) corners_.push_back(scene_.positions[size_t(corner)]);
+  for (size_t i = 0; i < corners.size(); ++i) corners_.push_back(scene_.positions[vertex(i)]);
   if (!triangulate(corners_, cut_)) {
     throw Error(fmt::format("{}: concave face has {} corners, at most {} are supported; split it", place(),
                             corners.size(), kMaxConcaveCorners));
   }
-  for (const glm::uvec3& t : cut_) addTriangle(glm::uvec3(corners[t.x], corners[t.y], corners[t.z]), place);
+  for (const glm::uvec3& t : cut_) addTriangle({vertex(t.x), vertex(t.y), vertex(t.z)}, place);
 }
 
 void SceneBuilder::reserve(uint64_t positions, uint64_t triangles) {

@@ -17,6 +17,14 @@ inline constexpr uint64_t kMaxElements = 0xfffffffeull - 1;
 /// both ends go.
 std::string cleanName(std::string_view name);
 
+/// The vertices that a polygon may use: corner i means vertex first + i of the scene, for 0 <= i < count.
+/// Messages print i + number_of_first, as the file counts.
+struct VertexRange {
+  int64_t first = 0;
+  int64_t count = 0;
+  int64_t number_of_first = 0;
+};
+
 /// Collects what a loader reads into a Scene that keeps the invariants. Loaders say where they are by a
 /// function that makes the text of the place ("city.obj:812"), called only for an error.
 class SceneBuilder {
@@ -32,11 +40,13 @@ class SceneBuilder {
   /// Following triangles belong to an object of that name. An empty or blank name becomes `fallback`.
   void beginObject(std::string_view name, const std::string& fallback);
 
-  /// Adds the triangles of a polygon; vertex numbers count from 0, negative ones are bad. Bad numbers and
-  /// fewer than three corners are errors, or, to repair, dropped and counted. A message prints the number
-  /// plus first_number, as the file counts.
-  void addPolygon(std::span<const int64_t> corners, const Place& place, int64_t first_number = 0);
+  /// Adds the triangles of a polygon; its vertex numbers count within `vertices`. Bad numbers and fewer than
+  /// three corners are errors, or, to repair, dropped and counted.
+  void addPolygon(std::span<const int64_t> corners, const VertexRange& vertices, const Place& place);
 
+  /// Counts triangles that repair drops before they come here.
+  void countRepaired(uint64_t triangles) { scene_.repaired_triangles += triangles; }
+  bool repairs() const { return repair_; }
   void countAlpha(uint64_t triangles) { scene_.alpha_triangles += triangles; }
   void countSingleSided(uint64_t triangles) { scene_.single_sided_triangles += triangles; }
   uint64_t triangleCount() const { return scene_.triangles.size(); }
@@ -49,7 +59,7 @@ class SceneBuilder {
 
  private:
   void addTriangle(const glm::uvec3& triangle, const Place& place);
-  bool usable(std::span<const int64_t> corners, const Place& place, int64_t first_number) const;
+  bool usable(std::span<const int64_t> corners, const VertexRange& vertices, const Place& place) const;
   bool isBadVertex(int64_t index) const;
   void closeObject();
 

@@ -79,7 +79,7 @@ TEST(LoadObj, ErrorsNameTheLine) {
       {kSquare + "f 4294967297 2 3\n",
        "a.obj:5: vertex index 0 is out of range 1..4; --repair drops the face"},
       {kSquare + "f 1 2\n", "a.obj:5: face has 2 vertices, needs at least 3; --repair drops it"},
-      {"f 1 2 3\n", "a.obj:1: face without any vertex in the file before it"},
+      {"f 1 2 3\n", "a.obj:1: face without any vertex in the file"},
       {"v 0 0\n", "a.obj:1: expected three numbers after \"v\""},
       {"v 0 0,5 1\n", "a.obj:1: expected three numbers after \"v\""},
       {"v 0 0 0\n v 0 nan 0\n", "a.obj:2: vertex (0, nan, 0) is not finite; --repair drops its triangles"},

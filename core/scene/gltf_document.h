@@ -1,0 +1,106 @@
+#pragma once
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sightline {
+
+// What geometry needs of a glTF 2.0 document, with defaults filled in and every index in range. Names follow
+// the format's own. Textures, animations, skins, cameras and lights are not looked at.
+
+struct GltfBuffer {
+  std::optional<std::string> uri;  ///< without: the GLB's chunk, or a place holder for compressed views
+  uint64_t byte_length = 0;
+};
+
+/// EXT_meshopt_compression of a buffer view.
+struct GltfCompression {
+  enum class Mode { kAttributes, kTriangles, kIndices };
+  enum class Filter { kNone, kOctahedral, kQuaternion, kExponential };
+  size_t buffer = 0;
+  uint64_t byte_offset = 0;
+  uint64_t byte_length = 0;
+  uint64_t byte_stride = 0;
+  uint64_t count = 0;
+  Mode mode = Mode::kAttributes;
+  Filter filter = Filter::kNone;
+};
+
+struct GltfBufferView {
+  size_t buffer = 0;
+  uint64_t byte_offset = 0;
+  uint64_t byte_length = 0;
+  uint64_t byte_stride = 0;  ///< 0: elements follow one another
+  std::optional<GltfCompression> compression;
+};
+
+/// The component types, with the format's numbers.
+enum class GltfComponent : uint32_t {
+  kByte = 5120,
+  kUnsignedByte = 5121,
+  kShort = 5122,
+  kUnsignedShort = 5123,
+  kUnsignedInt = 5125,
+  kFloat = 5126
+};
+
+struct GltfSparse {
+  uint64_t count = 0;
+  size_t indices_view = 0;
+  uint64_t indices_offset = 0;
+  GltfComponent indices_component = GltfComponent::kUnsignedInt;
+  size_t values_view = 0;
+  uint64_t values_offset = 0;
+};
+
+struct GltfAccessor {
+  std::optional<size_t> view;  ///< without: all zeros
+  uint64_t byte_offset = 0;
+  GltfComponent component = GltfComponent::kFloat;
+  bool normalized = false;
+  uint64_t count = 0;
+  uint32_t width = 1;  ///< components an element
+  std::optional<GltfSparse> sparse;
+};
+
+struct GltfMaterial {
+  bool alpha = false;  ///< alphaMode MASK or BLEND
+  bool double_sided = false;
+};
+
+struct GltfPrimitive {
+  std::optional<size_t> positions;  ///< accessor
+  std::optional<size_t> indices;    ///< accessor
+  GltfMaterial material;
+  uint32_t mode = 4;  ///< 4 triangles, 5 strip, 6 fan; below: points and lines
+};
+
+struct GltfMesh {
+  std::string name;
+  std::vector<GltfPrimitive> primitives;
+};
+
+struct GltfNode {
+  std::string name;
+  std::optional<size_t> mesh;
+  std::vector<size_t> children;
+  glm::dmat4 local{1.0};  ///< to the parent's space
+};
+
+struct GltfDocument {
+  std::vector<GltfBuffer> buffers;
+  std::vector<GltfBufferView> views;
+  std::vector<GltfAccessor> accessors;
+  std::vector<GltfMesh> meshes;
+  std::vector<GltfNode> nodes;
+  std::vector<size_t> roots;  ///< nodes of the default scene; the first scene if none is named; without
+                              ///< scenes every node that is no other's child
+};
+
+/// Reads and checks the document. Errors name file and place: "a.gltf: accessors[3].count: ...".
+GltfDocument readGltfDocument(const nlohmann::json& document, const std::string& file);
+
+}  // namespace sightline
