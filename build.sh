@@ -19,10 +19,13 @@ readonly packages=(
 
 usage() {
   cat <<'TEXT'
-usage: ./build.sh test [ARGS...]   build and run all tests; ARGS go to ctest, e.g. -R Golden
+usage: ./build.sh demo [--small]   build, bake a generated city, draw pictures of it into out/demo/
+       ./build.sh test [ARGS...]   build and run all tests; ARGS go to ctest, e.g. -R Golden
 
-It first installs the Debian packages that are missing, by apt-get as root or through sudo, and builds into build/.
+Both first install the Debian packages that are missing, by apt-get as root or through sudo, and build into build/.
+--small            a city of a twelfth of the triangles, fewer rays: for a slow machine, or CI
 SIGHTLINE_JOBS=N   compilers to run at once (default: one a core, and one for each 1.5 GiB of free memory at most)
+SIGHTLINE_DEVICE   what the demo bakes on (default: opencl; build/sightline devices lists what there is)
 TEXT
 }
 
@@ -43,6 +46,7 @@ missingPackages() {
 }
 
 installPackages() {
+  mkdir -p "$build" 2>/dev/null || fail "cannot create $build: put this project into a folder of yours"
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     fail "this is not a Debian system (no apt-get). Install what these Debian 12 packages hold: ${packages[*]};" \
          "then run: cmake --preset release && cmake --build --preset release"
@@ -61,9 +65,12 @@ installPackages() {
   say "installing Debian packages (log: $build/apt.log): ${missing[*]}"
   local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300
              -o Dpkg::Use-Pty=0)
-  "${apt[@]}" update >"$build/apt.log" || fail "apt-get update failed, and $by_hand"
-  "${apt[@]}" install -y --no-install-recommends "${missing[@]}" >>"$build/apt.log" ||
-    fail "apt-get install failed, and $by_hand"
+  {
+    "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends "${missing[@]}"
+  } >"$build/apt.log" 2>&1 || {
+    tail -n 5 "$build/apt.log" >&2
+    fail "apt-get failed, and $by_hand"
+  }
 }
 
 # PoCL and ccache keep compiled code under the user's cache folder. Where that cannot be written, PoCL keeps it in
@@ -112,13 +119,50 @@ runTests() {
   return "$result"
 }
 
+# Generates a city, places view cells along one of its streets, bakes and draws them. The streets' places follow
+# from the number of triangles and the seed.
+runDemo() {
+  local triangles=250000 street=-50.13 bake=() size=()
+  if [[ ${1:-} == --small ]]; then
+    triangles=20000 street=-43.14
+    bake=(--n-rand 1000000 --validation-rays 1000000)
+    size=(--width 640 --height 480)
+  fi
+  local sightline="$build/sightline" out=out/demo device=${SIGHTLINE_DEVICE:-opencl} cell view
+  rm -rf "$out"
+  mkdir -p "$out"
+  say "generating a city of $triangles triangles and view cells along a street"
+  "$sightline" scene city -o "$out/city.glb" --triangles "$triangles" --seed 1
+  "$sightline" cells "$out/city.glb" -o "$out/cells.json" --path "$street,1.5,-75" "$street,1.5,75" --length 50
+  say "baking (device: $device)"
+  "$sightline" bake "$out/city.glb" --cells "$out/cells.json" -o "$out/city.pvs" --report "$out/report.json" \
+    --device "$device" "${bake[@]}"
+  say "drawing: visible triangles green, the rest grey; from inside, missing ones red"
+  for cell in 0 1 2; do
+    for view in outside inside; do
+      "$sightline" picture "$out/city.glb" "$out/city.pvs" --cell "$cell" --view "$view" --device "$device" \
+        -o "$out/cell-$((cell + 1))-$view.png" "${size[@]}"
+    done
+  done
+  say "pictures and results are in $root/$out"
+}
+
 main() {
   local command=${1:-}
   (($# == 0)) || shift
   cd -- "$root"
   case $command in
+    demo)
+      if (($# > 1)) || [[ ${1:---small} != --small ]]; then
+        usage >&2
+        exit 2
+      fi
+      installPackages
+      prepareCaches
+      buildTarget sightline
+      runDemo "$@"
+      ;;
     test)
-      mkdir -p "$build"
       installPackages
       prepareCaches
       buildTarget all
