@@ -8,6 +8,7 @@ namespace sightline {
 /// its name, for messages and for files beside it. All throw Error.
 Scene loadObj(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options);
 Scene loadGltf(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options);
+Scene loadPly(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options);
 Scene loadGlb(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options);
 
 }  // namespace sightline

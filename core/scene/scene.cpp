@@ -19,7 +19,7 @@ namespace sightline {
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options) {
   using Loader = Scene (*)(FileBytes, const std::filesystem::path&, const SceneLoadOptions&);
   static const std::map<std::string, Loader> loaders = {
-      {".obj", loadObj}, {".gltf", loadGltf}, {".glb", loadGlb}};
+      {".obj", loadObj}, {".gltf", loadGltf}, {".glb", loadGlb}, {".ply", loadPly}};
   const std::string extension = lowerExtension(file);
   const auto loader = loaders.find(extension);
   if (loader == loaders.end()) {

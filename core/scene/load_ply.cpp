@@ -1,0 +1,248 @@
+// PLY, after Greg Turk, The PLY Polygon File Format, 1994. Read here, for want of a library: Debian 12 has no
+// small PLY reader, CGAL's is GPL, and Assimp's keeps neither rows for messages nor memory for 20M triangles.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+#include "core/error.h"
+#include "core/scene/decimal.h"
+#include "core/scene/loaders.h"
+#include "core/scene/ply_header.h"
+#include "core/scene/scene_builder.h"
+
+namespace sightline {
+namespace {
+
+/// Takes numbers off the rows, in text or binary.
+class NumberReader {
+ public:
+  NumberReader(std::string_view bytes, PlyFormat format) : rest_(bytes), format_(format) {}
+
+  size_t bytesLeft() const { return rest_.size(); }
+  /// Whether nothing is left that could be a number; true after a binary number could not be read.
+  bool atEnd() const { return isBinary() || rest_.find_first_not_of(kBlanks) == std::string_view::npos; }
+  bool isBinary() const { return format_ != PlyFormat::kAscii; }
+
+  /// A value as a float; nothing at the file's end or where no number stands.
+  std::optional<float> real(PlyType type) {
+    if (type == PlyType::kFloat32) return isBinary() ? binary<float, float>() : takeFloat(rest_);
+    if (type == PlyType::kFloat64) return isBinary() ? binary<double, float>() : takeFloat(rest_);
+    const std::optional<int64_t> value = whole(type);
+    return value ? std::optional<float>(float(*value)) : std::nullopt;
+  }
+
+  /// A value of a whole type.
+  std::optional<int64_t> whole(PlyType type) {
+    if (!isBinary()) return decimalInteger();
+    switch (type) {
+      case PlyType::kInt8:
+        return binary<int8_t, int64_t>();
+      case PlyType::kUint8:
+        return binary<uint8_t, int64_t>();
+      case PlyType::kInt16:
+        return binary<int16_t, int64_t>();
+      case PlyType::kUint16:
+        return binary<uint16_t, int64_t>();
+      case PlyType::kInt32:
+        return binary<int32_t, int64_t>();
+      default:
+        return binary<uint32_t, int64_t>();
+    }
+  }
+
+ private:
+  template <typename Stored, typename Result>
+  std::optional<Result> binary() {
+    if (rest_.size() < sizeof(Stored)) return std::nullopt;
+    char bytes[sizeof(Stored)];
+    std::memcpy(bytes, rest_.data(), sizeof(Stored));
+    if (format_ == PlyFormat::kBigEndian) std::reverse(bytes, bytes + sizeof(Stored));
+    rest_.remove_prefix(sizeof(Stored));
+    return Result(std::bit_cast<Stored>(bytes));
+  }
+
+  std::optional<int64_t> decimalInteger() {
+    rest_.remove_prefix(std::min(rest_.find_first_not_of(kBlanks), rest_.size()));
+    int64_t value = 0;
+    const char* end = rest_.data() + rest_.size();
+    const auto result = std::from_chars(rest_.data(), end, value);
+    if (result.ec != std::errc()) return std::nullopt;
+    if (result.ptr != end && kBlanks.find(*result.ptr) == std::string_view::npos) return std::nullopt;
+    rest_.remove_prefix(size_t(result.ptr - rest_.data()));
+    return value;
+  }
+
+  static constexpr std::string_view kBlanks = " \t\r\n\v\f";
+  std::string_view rest_;
+  PlyFormat format_;
+};
+
+class PlyReader {
+ public:
+  PlyReader(std::string_view bytes, const std::string& name, const SceneLoadOptions& options)
+      : name_(name),
+        header_(readPlyHeader(bytes, name)),
+        numbers_(bytes.substr(header_.data_offset), header_.format),
+        builder_(options) {}
+
+  Scene read(const std::string& object) {
+    builder_.beginObject(object, "ply");
+    bool has_vertices = false;
+    for (const PlyElement& element : header_.elements) {
+      element_ = &element;
+      if (element.name == "vertex") {
+        has_vertices = true;
+        readVertices();
+      } else if (element.name == "face" || element.name == "tristrips") {
+        if (!has_vertices)
+          throw Error(fmt::format("{}: element {} stands before the vertices", name_, element.name));
+        readFaces(element.name == "tristrips");
+      } else {
+        skipElement();
+      }
+    }
+    return builder_.finish(name_);
+  }
+
+ private:
+  std::string place() const { return fmt::format("{}: element {}, row {}", name_, element_->name, row_); }
+
+  [[noreturn]] void failAt(const PlyProperty& property) const {
+    throw Error(
+        fmt::format("{}: property {}: {}", place(), property.name,
+                    numbers_.atEnd() ? "the file ends here; is it truncated?" : "expected a number"));
+  }
+
+  /// How many rows could still come, so that memory follows the file's size and not its claims.
+  uint64_t possibleRows() const {
+    const uint64_t least = std::max<uint64_t>(1, element_->leastRowBytes(header_.format));
+    return std::min<uint64_t>(element_->count, (numbers_.bytesLeft() + 1) / least);
+  }
+
+  void readVertices() {
+    size_t where[3];
+    for (int i = 0; i < 3; ++i) {
+      const char* axis = i == 0 ? "x" : (i == 1 ? "y" : "z");
+      const std::optional<size_t> found = element_->find(axis);
+      if (!found || element_->properties[*found].list_size_type) {
+        throw Error(fmt::format("{}: element vertex has no property {}", name_, axis));
+      }
+      where[i] = *found;
+    }
+    builder_.reserve(possibleRows(), 0);
+    for (row_ = 0; row_ < element_->count; ++row_) {
+      glm::vec3 position;
+      for (size_t i = 0; i < element_->properties.size(); ++i) {
+        const float value = skipOrRead(element_->properties[i]);
+        for (int axis = 0; axis < 3; ++axis) {
+          if (where[axis] == i) position[axis] = value;
+        }
+      }
+      builder_.addPosition(position, [this] { return place(); });
+    }
+  }
+
+  void readFaces(bool strips) {
+    std::optional<size_t> list = element_->find("vertex_indices");
+    if (!list) list = element_->find("vertex_index");
+    if (!list || !element_->properties[*list].list_size_type) {
+      throw Error(fmt::format("{}: element {} has no list vertex_indices", name_, element_->name));
+    }
+    const PlyType type = element_->properties[*list].type;
+    if (type == PlyType::kFloat32 || type == PlyType::kFloat64) {
+      throw Error(fmt::format("{}: element {}: vertex indices need a whole type", name_, element_->name));
+    }
+    if (!strips) builder_.reserve(0, possibleRows());
+    for (row_ = 0; row_ < element_->count; ++row_) {
+      for (size_t i = 0; i < element_->properties.size(); ++i) {
+        if (i == *list) {
+          readCorners(element_->properties[i]);
+        } else {
+          skipOrRead(element_->properties[i]);
+        }
+      }
+      const VertexRange vertices{0, int64_t(builder_.positionCount()), 0};
+      if (strips) {
+        addStrips(vertices);
+      } else {
+        builder_.addPolygon(corners_, vertices, [this] { return place(); });
+      }
+    }
+  }
+
+  /// Strips in one list, -1 between them.
+  void addStrips(const VertexRange& vertices) {
+    size_t start = 0;
+    for (size_t i = 0; i < corners_.size(); ++i) {
+      if (corners_[i] == -1) {
+        start = i + 1;
+      } else if (i >= start + 2) {
+        const bool turned = (i - start) % 2 != 0;
+        const int64_t triangle[3] = {corners_[turned ? i - 1 : i - 2], corners_[turned ? i - 2 : i - 1],
+                                     corners_[i]};
+        builder_.addPolygon(triangle, vertices, [this] { return place(); });
+      }
+    }
+  }
+
+  uint64_t readListSize(const PlyProperty& property) {
+    const std::optional<int64_t> size = numbers_.whole(*property.list_size_type);
+    if (!size) failAt(property);
+    const uint64_t item_bytes = numbers_.isBinary() ? plyTypeBytes(property.type) : 2;
+    if (*size < 0 || uint64_t(*size) > (numbers_.bytesLeft() + 1) / item_bytes) {
+      throw Error(fmt::format("{}: property {}: a list of {} values does not fit the {} bytes left", place(),
+                              property.name, *size, numbers_.bytesLeft()));
+    }
+    return uint64_t(*size);
+  }
+
+  void readCorners(const PlyProperty& property) {
+    corners_.clear();
+    const uint64_t size = readListSize(property);
+    for (uint64_t i = 0; i < size; ++i) {
+      const std::optional<int64_t> corner = numbers_.whole(property.type);
+      if (!corner) failAt(property);
+      corners_.push_back(*corner);
+    }
+  }
+
+  /// The value of a plain property; reads over a list.
+  float skipOrRead(const PlyProperty& property) {
+    const uint64_t values = property.list_size_type ? readListSize(property) : 1;
+    float last = 0.0f;
+    for (uint64_t i = 0; i < values; ++i) {
+      const std::optional<float> value = numbers_.real(property.type);
+      if (!value) failAt(property);
+      last = *value;
+    }
+    return last;
+  }
+
+  void skipElement() {
+    if (element_->properties.empty()) return;
+    for (row_ = 0; row_ < element_->count; ++row_) {
+      for (const PlyProperty& property : element_->properties) skipOrRead(property);
+    }
+  }
+
+  const std::string& name_;
+  PlyHeader header_;
+  NumberReader numbers_;
+  SceneBuilder builder_;
+  const PlyElement* element_ = nullptr;
+  uint64_t row_ = 0;
+  std::vector<int64_t> corners_;
+};
+
+}  // namespace
+
+Scene loadPly(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
+  const std::string name = file.string();
+  return PlyReader(bytes.view(), name, options).read(file.stem().string());
+}
+
+}  // namespace sightline
