@@ -1,0 +1,98 @@
+// The sampling stages: generate SL_PACKET rays a work item, trace them together, insert what they hit.
+#include "cl_kernels/sampling_state.cl"
+
+__kernel void traceRandom(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* faces, StageParams params,
+                          RandomSegment segment, uint slots, volatile __global uint* ray_counters) {
+  const SceneRef scene = SL_SCENE_PACK;
+  const SetRef set = SL_SET_PACK;
+  const uint first = (uint)get_global_id(0) * SL_PACKET;
+  const Face face = faces[segment.range.x];
+  Ray rays[SL_PACKET];
+  Hit hits[SL_PACKET];
+  uint offsets[SL_PACKET];
+  uint traced = 0;
+  for (uint lane = 0; lane < SL_PACKET; ++lane) {
+    offsets[lane] = first + lane < slots ? slotOffset(segment, first + lane) : kNoTriangle;
+    rays[lane] = noRay();
+    if (offsets[lane] == kNoTriangle) continue;
+    rays[lane] = randomRay(segmentFirst(segment) + offsets[lane], face, params.shifts);
+    ++traced;
+  }
+  traceRays(scene, rays, hits);
+  for (uint lane = 0; lane < SL_PACKET; ++lane) {
+    insertHit(set, hits[lane].triangle, segment.batch.x + offsets[lane]);
+  }
+  countRays(ray_counters, traced);
+}
+
+/// As traceRandom, but only counts the hits outside the set, in the word after the ray counters.
+__kernel void countMissing(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* faces, uint4 shifts,
+                           RandomSegment segment, uint slots, volatile __global uint* ray_counters) {
+  const SceneRef scene = SL_SCENE_PACK;
+  const SetRef set = SL_SET_PACK;
+  const uint first = (uint)get_global_id(0) * SL_PACKET;
+  const Face face = faces[segment.range.x];
+  Ray rays[SL_PACKET];
+  Hit hits[SL_PACKET];
+  uint traced = 0;
+  for (uint lane = 0; lane < SL_PACKET; ++lane) {
+    rays[lane] = first + lane < slots ? slotRay(segment, face, shifts, first + lane) : noRay();
+    traced += hasDirection(rays[lane]) ? 1 : 0;
+  }
+  traceRays(scene, rays, hits);
+  uint missing = 0;
+  for (uint lane = 0; lane < SL_PACKET; ++lane) {
+    const uint triangle = hits[lane].triangle;
+    missing += triangle != kNoTriangle && !isInSet(set, triangle) ? 1 : 0;
+  }
+  if (missing > 0) atomic_add(&ray_counters[SL_COUNTERS], missing);
+  countRays(ray_counters, traced);
+}
+
+/// Border rays 0 .. total - 1 of the entries from `first_entry`; notes what each hit and, a bit a ray, whether
+/// it met a discontinuity.
+__kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StageParams params, __global const PvsEntry* entries,
+                          uint first_entry, uint total, __global uint* border_hits,
+                          volatile __global uint* discontinuity_bits, volatile __global uint* ray_counters) {
+  const SceneRef scene = SL_SCENE_PACK;
+  const SetRef set = SL_SET_PACK;
+  const BorderSource source = {record_of, entries, first_entry};
+  const uint first = (uint)get_global_id(0) * SL_PACKET;
+  const uint count = min((uint)SL_PACKET, total - min(first, total));
+  Ray rays[SL_PACKET];
+  Hit hits[SL_PACKET];
+  for (uint lane = 0; lane < SL_PACKET; ++lane) {
+    rays[lane] = lane < count ? borderRayAt(scene, source, params, first + lane) : noRay();
+  }
+  traceRays(scene, rays, hits);
+  uint bits = 0;
+  for (uint lane = 0; lane < count; ++lane) {
+    border_hits[first + lane] = hits[lane].triangle;
+    insertHit(set, hits[lane].triangle, first + lane + 1);
+    bits |= (isDiscontinuity(rays[lane], hits[lane], params) ? 1u : 0u) << lane;
+  }
+  if (bits != 0) atomic_or(&discontinuity_bits[first >> 5], bits << (first & 31));
+  countRays(ray_counters, count);
+}
+
+/// Reverse rays 0 .. total - 1 of the discontinuities from `first_item`: one a lane.
+__kernel void traceReverse(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global const Face* faces, StageParams params,
+                           __global const PvsEntry* entries, uint first_entry, __global const uint* border_hits,
+                           __global const uint* discontinuities, uint first_item, ulong items_before, uint total,
+                           volatile __global uint* ray_counters) {
+  const SceneRef scene = SL_SCENE_PACK;
+  const SetRef set = SL_SET_PACK;
+  const ReverseSource source = {{record_of, entries, first_entry}, border_hits, discontinuities, first_item, items_before};
+  const uint first = (uint)get_global_id(0) * SL_PACKET;
+  Ray rays[SL_PACKET];
+  Hit hits[SL_PACKET];
+  uint traced = 0;
+  for (uint lane = 0; lane < SL_PACKET; ++lane) {
+    rays[lane] = first + lane < total ? reverseRayAt(scene, source, faces, params, first + lane) : noRay();
+    traced += hasDirection(rays[lane]) ? 1 : 0;
+  }
+  if (traced == 0) return;
+  traceRays(scene, rays, hits);
+  for (uint lane = 0; lane < SL_PACKET; ++lane) insertHit(set, hits[lane].triangle, first + lane + 1);
+  countRays(ray_counters, traced);
+}

@@ -1,0 +1,278 @@
+#include "core/device/cpu_device.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/info.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <atomic>
+#include <bit>
+#include <numeric>
+#include <utility>
+
+#include "core/device/cpu_tracer.h"
+#include "core/device/host_set.h"
+#include "core/error.h"
+#include "core/gvs/random_segment.h"
+#include "core/shared/border.h"
+#include "core/shared/random_ray.h"
+#include "core/shared/reverse.h"
+
+namespace sightline {
+namespace {
+
+/// Rays that are traced together, and packets that a thread takes at a time.
+constexpr uint32_t kPacket = 8;
+constexpr size_t kGrain = 64;
+
+class CpuDevice final : public Device {
+ public:
+  CpuDevice(const Scene& scene, const Bvh& bvh, const DeviceOptions& options)
+      : scene_(scene),
+        bvh_(bvh),
+        tracer_(scene, bvh),
+        arena_(options.threads > 0 ? options.threads : tbb::task_arena::automatic),
+        set_(static_cast<uint32_t>(scene.triangles.size()), wantsHash(options)) {}
+
+  DeviceInfo info() const override { return cpuDeviceInfo(); }
+
+  void beginCell(std::span<const Face> faces, const StageParams& params) override {
+    faces_.assign(faces.begin(), faces.end());
+    params_ = params;
+    set_.clear();
+    entries_.clear();
+    segments_.clear();
+    rays_ = 0;
+    items_before_ = 0;
+    discontinuities_.clear();
+  }
+
+  void traceRandom(const RandomSegment& segment) override {
+    segments_.push_back(segment);
+    const Face face = faces_.at(segment.range.x);
+    rays_ += launch(
+        slotCount(segment), [&](uint32_t slot) { return slotRay(segment, face, params_.shifts, slot); },
+        [&](uint32_t slot, const Ray&, const Hit& hit, SetRef set) {
+          insertHit(set, hit.triangle, segment.batch.x + slotOffset(segment, slot));
+        });
+  }
+
+  uint32_t traceBorder(uint32_t first, uint32_t count) override {
+    items_before_ += discontinuities_.size();
+    border_first_ = first;
+    const uint64_t total = uint64_t(count) * borderRayCount(params_);
+    border_hits_.assign(total, kNoTriangle);
+    is_discontinuity_.assign(total, 0);
+    rays_ += launch(
+        total, [&](uint32_t index) { return borderRayOf(index); },
+        [&](uint32_t index, const Ray& ray, const Hit& hit, SetRef set) {
+          border_hits_[index] = hit.triangle;
+          is_discontinuity_[index] = isDiscontinuity(ray, hit, params_) ? 1 : 0;
+          insertHit(set, hit.triangle, index + 1);
+        });
+    discontinuities_.clear();
+    for (uint32_t index = 0; index < total; ++index) {
+      if (is_discontinuity_[index] != 0) discontinuities_.push_back(index);
+    }
+    return static_cast<uint32_t>(discontinuities_.size());
+  }
+
+  void traceReverse(uint32_t first, uint32_t count) override {
+    reverse_first_ = first;
+    rays_ += launch(
+        uint64_t(count) * reverseRayCount(params_), [&](uint32_t index) { return reverseRayOf(index); },
+        [&](uint32_t index, const Ray&, const Hit& hit, SetRef set) {
+          insertHit(set, hit.triangle, index + 1);
+        });
+  }
+
+  uint32_t collect(uint32_t stage) override {
+    const size_t before = entries_.size();
+    const SetRef set = set_.ref();
+    std::vector<uint32_t>& fresh = set_.fresh();
+    for (size_t word = 0; word < fresh.size(); ++word) {
+      for (uint32_t bits = std::exchange(fresh[word], 0u); bits != 0; bits &= bits - 1) {
+        const uint32_t triangle =
+            static_cast<uint32_t>(word * 32) + static_cast<uint32_t>(std::countr_zero(bits));
+        uint32_t& winner = set.winner[findSlot(set, triangle)];
+        const Ray ray = rayOfBatch(stage, winner);
+        winner = kSlotOld;
+        entries_.push_back(entryOf(triangle, ray, stage));
+      }
+    }
+    segments_.clear();
+    while (set_.isHash() && entries_.size() * 2 > set_.capacity()) set_.grow(2);
+    return static_cast<uint32_t>(entries_.size() - before);
+  }
+
+  void insertContained(std::span<const uint32_t> triangles) override {
+    for (const uint32_t triangle : triangles) {
+      while (claimSlot(set_.ref(), triangle) == kSlotEmpty) set_.grow(2);
+      set_.ref().winner[findSlot(set_.ref(), triangle)] = kSlotOld;
+      entries_.push_back(entryOf(triangle, Ray{vec4(0), vec4(0)}, kStageContained));
+      while (set_.isHash() && entries_.size() * 2 > set_.capacity()) set_.grow(2);
+    }
+  }
+
+  uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {
+    const Face face = faces_.at(segment.range.x);
+    std::atomic<uint64_t> missing = 0;
+    rays_ += launch(
+        slotCount(segment), [&](uint32_t slot) { return slotRay(segment, face, shifts, slot); },
+        [&](uint32_t, const Ray&, const Hit& hit, SetRef set) {
+          if (hit.triangle != kNoTriangle && !isInSet(set, hit.triangle)) missing.fetch_add(1);
+        });
+    return missing;
+  }
+
+  DeviceCounters counters() override {
+    const uint64_t scratch = border_hits_.capacity() * 5 + discontinuities_.capacity() * 4;
+    return {rays_, residentBytes() + set_.bytes() + entries_.capacity() * sizeof(PvsEntry) + scratch};
+  }
+
+  std::vector<PvsEntry> readPvs() override { return entries_; }
+
+  void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override {
+    parallel((rays.size() + kPacket - 1) / kPacket, [&](size_t begin, size_t end) {
+      const size_t first = begin * kPacket, last = std::min(end * kPacket, rays.size());
+      tracer_.tracePacket(&rays[first], &hits[first], static_cast<int>(last - first));
+    });
+  }
+
+ private:
+  /// Tree and triangles.
+  uint64_t residentBytes() const {
+    return tracer_.memoryBytes() + bvh_.nodes2.size() * sizeof(BvhNode2) +
+           bvh_.nodes8.size() * sizeof(BvhNode8);
+  }
+
+  bool wantsHash(const DeviceOptions& options) const {
+    if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
+    return options.memory_budget_bytes > 0 &&
+           residentBytes() + scene_.triangles.size() * 4 > options.memory_budget_bytes;
+  }
+
+  void parallel(size_t count, auto&& body) {
+    arena_.execute([&] {
+      tbb::parallel_for(tbb::blocked_range<size_t>(0, count, kGrain),
+                        [&](const tbb::blocked_range<size_t>& range) { body(range.begin(), range.end()); });
+    });
+  }
+
+  /// Traces generate(index) for all indices, packet by packet, and hands those that have a direction with
+  /// their hits to take(index, ray, hit, set); again with a larger set if it was full (insertion is
+  /// idempotent). Returns the rays of one full run.
+  uint64_t launch(uint64_t count, auto&& generate, auto&& take) {
+    for (;;) {
+      std::atomic<uint64_t> total = 0;
+      const SetRef set = set_.ref();
+      parallel((count + kPacket - 1) / kPacket, [&](size_t begin, size_t end) {
+        Ray rays[kPacket];
+        Hit hits[kPacket];
+        uint64_t traced = 0;
+        for (size_t packet = begin; packet < end; ++packet) {
+          const auto first = static_cast<uint32_t>(packet * kPacket);
+          const auto lanes = static_cast<uint32_t>(std::min<uint64_t>(kPacket, count - packet * kPacket));
+          for (uint32_t lane = 0; lane < lanes; ++lane) rays[lane] = generate(first + lane);
+          tracer_.tracePacket(rays, hits, static_cast<int>(lanes));
+          for (uint32_t lane = 0; lane < lanes; ++lane) {
+            if (maxAbs3(xyz3(rays[lane].direction)) == 0.0f) continue;
+            ++traced;
+            take(first + lane, rays[lane], hits[lane], set);
+          }
+        }
+        total.fetch_add(traced, std::memory_order_relaxed);
+      });
+      if (!set_.takeOverflow()) return total;
+      set_.grow(4);
+    }
+  }
+
+  vec3 corner(uint32_t triangle, int i) const { return scene_.positions[scene_.triangles[triangle][i]]; }
+
+  /// Border ray `index` of the last traceBorder.
+  Ray borderRayOf(uint32_t index) const {
+    const uint32_t per_entry = borderRayCount(params_);
+    const uvec4 entry = entries_[border_first_ + index / per_entry].origin_triangle;
+    const vec3 origin(uintBitsToFloat(entry.x), uintBitsToFloat(entry.y), uintBitsToFloat(entry.z));
+    return borderRay(corner(entry.w, 0), corner(entry.w, 1), corner(entry.w, 2), index % per_entry, origin,
+                     params_);
+  }
+
+  /// Reverse ray `index` of the last traceReverse; without direction where its start point is excluded.
+  Ray reverseRayOf(uint32_t index) const {
+    const uint32_t per_item = reverseRayCount(params_);
+    const uint32_t item = reverse_first_ + index / per_item, k = index % per_item;
+    const uint32_t border_index = discontinuities_[item];
+    const Ray border = borderRayOf(border_index);
+    const vec3 target = add3(xyz3(border.origin), xyz3(border.direction));
+    const Ray none{vec4(0), vec4(0)};
+    uint32_t mask = 0;
+    for (size_t f = 0; f < faces_.size(); ++f) mask |= (faceLooksAt(faces_[f], target) ? 1u : 0u) << f;
+    if (mask == 0) return none;
+    const uint64_t number = items_before_ + item;
+    const Face& face = faces_[reverseFace(mask, item, k)];
+    const Ray ray = reverseRay(reverseOrigin(face, number, k, params_), target);
+    const uint32_t occluder = border_hits_[border_index];
+    if (occluder != kNoTriangle &&
+        segmentMeetsTriangle(ray, corner(occluder, 0), corner(occluder, 1), corner(occluder, 2))) {
+      return none;
+    }
+    return ray;
+  }
+
+  /// The ray with this index (1 ..) in the batch that is being collected.
+  Ray rayOfBatch(uint32_t stage, uint32_t index) const {
+    if (stage == kStageBorder) return borderRayOf(index - 1);
+    if (stage == kStageReverse) return reverseRayOf(index - 1);
+    for (const RandomSegment& segment : segments_) {
+      const uint32_t offset = index - segment.batch.x;
+      if (offset < segment.range.w) {
+        return randomRay(segmentFirst(segment) + offset, faces_[segment.range.x], params_.shifts);
+      }
+    }
+    throw Error("internal error: a winner's ray is in no segment of its batch");
+  }
+
+  static PvsEntry entryOf(uint32_t triangle, const Ray& ray, uint32_t stage) {
+    return {uvec4(floatBitsToUint(ray.origin.x), floatBitsToUint(ray.origin.y), floatBitsToUint(ray.origin.z),
+                  triangle),
+            uvec4(floatBitsToUint(ray.direction.x), floatBitsToUint(ray.direction.y),
+                  floatBitsToUint(ray.direction.z), stage)};
+  }
+
+  const Scene& scene_;
+  const Bvh& bvh_;
+  CpuTracer tracer_;
+  tbb::task_arena arena_;
+  HostSet set_;
+  std::vector<Face> faces_;
+  StageParams params_{};
+  std::vector<PvsEntry> entries_;
+  std::vector<RandomSegment> segments_;    ///< of the batch
+  uint32_t border_first_ = 0;              ///< entry of the first border ray
+  std::vector<uint32_t> border_hits_;      ///< a border ray: the triangle that it hit
+  std::vector<uint8_t> is_discontinuity_;  ///< a border ray
+  std::vector<uint32_t> discontinuities_;  ///< indices of border rays
+  uint64_t items_before_ = 0;              ///< discontinuities of the cell before these
+  uint32_t reverse_first_ = 0;
+  uint64_t rays_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> makeCpuDevice(const Scene& scene, const Bvh& bvh, const DeviceOptions& options) {
+  return std::make_unique<CpuDevice>(scene, bvh, options);
+}
+
+DeviceInfo cpuDeviceInfo() {
+  DeviceInfo info;
+  info.id = "cpu";
+  info.name = fmt::format("host processor, {} threads", tbb::info::default_concurrency());
+  info.driver = "built in";
+  info.layout = "8-wide, single rays";
+  return info;
+}
+
+}  // namespace sightline

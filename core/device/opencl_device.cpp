@@ -1,0 +1,270 @@
+#include "core/device/opencl_device.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "core/device/opencl_context.h"
+#include "core/device/opencl_scene.h"
+#include "core/device/opencl_set.h"
+#include "core/gvs/random_segment.h"
+#include "core/shared/border.h"
+#include "core/shared/reverse.h"
+
+namespace sightline {
+namespace {
+
+/// As in cl_kernels: words of ray counters, words of bits that a work item counts, items that sum them up.
+constexpr uint32_t kCounters = 256;
+constexpr uint32_t kBlockWords = 64;
+constexpr uint32_t kSumItems = 64;
+/// Work-group size of the kernels that handle lists. Fixed: PoCL compiles a kernel anew for every size.
+constexpr uint32_t kListGroup = 64;
+/// Rays of one launch of traceRays: bounds the buffers.
+constexpr size_t kRayChunk = 1u << 20;
+
+/// A buffer that is made larger when needed; contents are lost.
+struct Scratch {
+  ClBuffer buffer;
+  void reserve(OpenClContext& context, uint64_t bytes, const char* what) {
+    if (buffer.bytes() >= bytes && buffer.get() != nullptr) return;
+    buffer = ClBuffer();
+    buffer = context.buffer(bytes, what);
+  }
+};
+
+class OpenClDevice final : public Device {
+ public:
+  OpenClDevice(const std::string& selector, const Scene& scene, const Bvh& bvh, const DeviceOptions& options)
+      : context_(selector),
+        lanes_(raysPerItem(context_)),
+        triangle_count_(static_cast<uint32_t>(scene.triangles.size())) {
+    context_.build(traceOptions(context_));
+    // Groups of 64 rays keep the cores of a CPU evenly busy and fill the smallest unit of a GPU.
+    local_ = options.work_group_size > 0 ? options.work_group_size : std::max(1u, 64 / lanes_);
+    scene_ = uploadScene(context_, scene, bvh);
+    uploadRecordIndex(bvh);
+    set_ = std::make_unique<OpenClSet>(context_, triangle_count_, wantsHash(options));
+    const char* names[] = {"traceRandom",     "countMissing", "traceBorder",    "traceReverse",
+                           "countBits",       "sumBlocks",    "writeIndices",   "appendEntries",
+                           "insertContained", "copyEntries",  "traceRaysKernel"};
+    ClKernel* kernels[] = {&random_, &missing_, &border_,    &reverse_, &count_,      &sum_,
+                           &write_,  &append_,  &contained_, &copy_,    &rays_kernel_};
+    for (size_t i = 0; i < std::size(names); ++i) *kernels[i] = context_.kernel(names[i]);
+    faces_ = context_.buffer(6 * sizeof(Face), "faces of the view cell");
+    counters_ = context_.buffer((kCounters + 1) * 4, "counters");
+    context_.fill(counters_, 0, counters_.bytes());
+    reserveEntries(1u << 16);
+  }
+
+  DeviceInfo info() const override { return context_.info(); }
+
+  void beginCell(std::span<const Face> faces, const StageParams& params) override {
+    context_.write(faces_, faces.data(), faces.size_bytes());
+    params_ = params;
+    set_->clear();
+    segments_.clear();
+    size_ = discontinuities_ = 0;
+    rays_ = items_before_ = 0;
+  }
+
+  void traceRandom(const RandomSegment& segment) override {
+    segments_.push_back(segment);
+    const auto slots = static_cast<uint32_t>(slotCount(segment));
+    traceUntilItFits([&] { launch(random_, slots, faces_, params_, segment, slots, counters_); });
+  }
+
+  uint32_t traceBorder(uint32_t first, uint32_t count) override {
+    items_before_ += discontinuities_;
+    border_first_ = first;
+    const uint32_t total = count * borderRayCount(params_);
+    const uint32_t words = (total + 31) / 32;
+    border_hits_.reserve(context_, uint64_t(total) * 4, "hits of border rays");
+    bits_.reserve(context_, uint64_t(words) * 4, "bits of discontinuities");
+    context_.fill(bits_.buffer, 0, uint64_t(words) * 4);
+    traceUntilItFits([&] {
+      launch(border_, total, record_of_, params_, entries_, first, total, border_hits_.buffer, bits_.buffer,
+             counters_);
+    });
+    discontinuities_ = listBits(bits_.buffer, words, items_, "list of discontinuities");
+    return discontinuities_;
+  }
+
+  void traceReverse(uint32_t first, uint32_t count) override {
+    reverse_first_ = first;
+    const uint32_t total = count * reverseRayCount(params_);
+    traceUntilItFits([&] {
+      launch(reverse_, total, record_of_, faces_, params_, entries_, border_first_, border_hits_.buffer,
+             items_.buffer, first, items_before_, total, counters_);
+    });
+  }
+
+  uint32_t collect(uint32_t stage) override {
+    const uint32_t found = listBits(set_->fresh(), set_->freshWords(), new_ids_, "list of new triangles");
+    if (found > 0) {
+      reserveEntries(size_ + found);
+      segment_buffer_.reserve(context_, segments_.size() * sizeof(RandomSegment), "random segments");
+      if (!segments_.empty()) {
+        context_.write(segment_buffer_.buffer, segments_.data(), segments_.size() * sizeof(RandomSegment));
+      }
+      border_hits_.reserve(context_, 4, "hits of border rays");
+      items_.reserve(context_, 4, "list of discontinuities");
+      context_.launch(append_, found, kListGroup, scene_.nodes, scene_.triangles, scene_.reach, set_->keys(),
+                      set_->winner(), set_->fresh(), set_->overflow(), set_->capacity(), record_of_, faces_,
+                      params_, entries_, size_, new_ids_.buffer, found, stage, segment_buffer_.buffer,
+                      static_cast<uint32_t>(segments_.size()), border_first_, border_hits_.buffer,
+                      items_.buffer, reverse_first_, items_before_);
+      size_ += found;
+      set_->fit(size_);
+    }
+    segments_.clear();
+    return found;
+  }
+
+  void insertContained(std::span<const uint32_t> triangles) override {
+    if (triangles.empty()) return;
+    const auto count = static_cast<uint32_t>(triangles.size());
+    reserveEntries(size_ + count);
+    set_->fit(size_ + count);
+    new_ids_.reserve(context_, triangles.size_bytes(), "list of contained triangles");
+    context_.write(new_ids_.buffer, triangles.data(), triangles.size_bytes());
+    do {
+      context_.launch(contained_, count, kListGroup, set_->keys(), set_->winner(), set_->fresh(),
+                      set_->overflow(), set_->capacity(), entries_, size_, new_ids_.buffer, count);
+    } while (growIfFull());
+    size_ += count;
+  }
+
+  uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {
+    const auto slots = static_cast<uint32_t>(slotCount(segment));
+    launch(missing_, slots, faces_, shifts, segment, slots, counters_);
+    return takeCounters();
+  }
+
+  DeviceCounters counters() override { return {rays_, context_.allocatedBytes()}; }
+
+  std::vector<PvsEntry> readPvs() override {
+    std::vector<PvsEntry> entries(size_);
+    if (size_ > 0) context_.read(entries_, entries.data(), entries.size() * sizeof(PvsEntry));
+    return entries;
+  }
+
+  void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override {
+    const size_t chunk = std::min(kRayChunk, rays.size());
+    const ClBuffer input = context_.buffer(chunk * sizeof(Ray), "rays");
+    const ClBuffer output = context_.buffer(chunk * sizeof(Hit), "hits");
+    for (size_t first = 0; first < rays.size(); first += chunk) {
+      const auto count = static_cast<uint32_t>(std::min(chunk, rays.size() - first));
+      context_.write(input, &rays[first], count * sizeof(Ray));
+      context_.launch(rays_kernel_, (count + lanes_ - 1) / lanes_, local_, scene_.nodes, scene_.triangles,
+                      scene_.reach, input, output, count);
+      context_.read(output, &hits[first], count * sizeof(Hit));
+    }
+  }
+
+ private:
+  bool wantsHash(const DeviceOptions& options) const {
+    if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
+    const uint64_t budget =
+        options.memory_budget_bytes > 0 ? options.memory_budget_bytes : info().memory_bytes;
+    const uint64_t array = uint64_t(triangle_count_) * 4;
+    return array > context_.maxAllocationBytes() || context_.allocatedBytes() + array > budget;
+  }
+
+  /// id -> one of its records, for the corners of border triangles and occluders.
+  void uploadRecordIndex(const Bvh& bvh) {
+    std::vector<uint32_t> record_of(triangle_count_, 0);
+    for (size_t i = bvh.references.size(); i-- > 0;) record_of[bvh.references[i]] = static_cast<uint32_t>(i);
+    record_of_ = context_.buffer(record_of.size() * 4, "index of triangles");
+    context_.write(record_of_, record_of.data(), record_of.size() * 4);
+  }
+
+  /// Launches a stage over `rays` rays with scene and set as its first arguments.
+  template <typename... Args>
+  void launch(const ClKernel& kernel, uint64_t rays, const Args&... args) {
+    context_.launch(kernel, (rays + lanes_ - 1) / lanes_, local_, scene_.nodes, scene_.triangles,
+                    scene_.reach, set_->keys(), set_->winner(), set_->fresh(), set_->overflow(),
+                    set_->capacity(), args...);
+  }
+
+  bool growIfFull() {
+    if (!set_->takeOverflow()) return false;
+    set_->grow(4);
+    return true;
+  }
+
+  /// Runs a stage, again with a larger set as long as it was full (insertion is idempotent), and counts the
+  /// rays of one full run.
+  void traceUntilItFits(auto&& stage) {
+    stage();
+    while (growIfFull()) {
+      context_.fill(counters_, 0, counters_.bytes());
+      stage();
+    }
+    takeCounters();
+  }
+
+  /// Books the rays of a launch; returns its missing rays.
+  uint64_t takeCounters() {
+    std::vector<uint32_t> counters(kCounters + 1);
+    context_.read(counters_, counters.data(), counters.size() * 4);
+    context_.fill(counters_, 0, counters_.bytes());
+    rays_ += std::accumulate(counters.begin(), counters.end() - 1, uint64_t(0));
+    return counters.back();
+  }
+
+  /// Writes the indices of the set bits to `indices`, ascending, and clears the bits. Returns their number.
+  uint32_t listBits(const ClBuffer& words, uint32_t word_count, Scratch& indices, const char* what) {
+    const uint32_t blocks = (word_count + kBlockWords - 1) / kBlockWords;
+    block_counts_.reserve(context_, (uint64_t(blocks) + 1) * 4, "counts of bits");
+    context_.launch(count_, blocks, kListGroup, words, word_count, blocks, block_counts_.buffer);
+    context_.launch(sum_, kSumItems, kSumItems, block_counts_.buffer, blocks);
+    uint32_t total = 0;
+    context_.read(block_counts_.buffer, &total, 4, uint64_t(blocks) * 4);
+    if (total == 0) return 0;
+    indices.reserve(context_, uint64_t(total) * 4, what);
+    context_.launch(write_, blocks, kListGroup, words, word_count, blocks, block_counts_.buffer,
+                    indices.buffer);
+    return total;
+  }
+
+  /// Makes room for `count` entries of the list, at least doubling it.
+  void reserveEntries(uint32_t count) {
+    if (count <= entry_capacity_) return;
+    entry_capacity_ = static_cast<uint32_t>(std::min<uint64_t>(
+        std::max<uint64_t>(count, uint64_t(entry_capacity_) * 2), std::max(count, triangle_count_)));
+    ClBuffer larger =
+        context_.buffer(uint64_t(entry_capacity_) * sizeof(PvsEntry), "list of visible triangles");
+    if (size_ > 0) context_.launch(copy_, size_, kListGroup, entries_, larger, size_);
+    context_.finish();
+    entries_ = std::move(larger);
+  }
+
+  OpenClContext context_;
+  uint32_t lanes_;  ///< rays a work item
+  uint32_t local_ = 0;
+  uint32_t triangle_count_;
+  OpenClScene scene_;
+  ClBuffer record_of_, faces_, counters_, entries_;
+  ClKernel random_, missing_, border_, reverse_, count_, sum_, write_, append_, contained_, copy_,
+      rays_kernel_;
+  std::unique_ptr<OpenClSet> set_;
+  StageParams params_{};
+  std::vector<RandomSegment> segments_;  ///< of the batch
+  Scratch segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_;
+  uint32_t entry_capacity_ = 0;
+  uint32_t size_ = 0;             ///< entries of the list
+  uint32_t border_first_ = 0;     ///< entry of the first border ray
+  uint32_t discontinuities_ = 0;  ///< of the last traceBorder
+  uint64_t items_before_ = 0;     ///< discontinuities of the cell before those
+  uint32_t reverse_first_ = 0;
+  uint64_t rays_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> makeOpenClDevice(const std::string& selector, const Scene& scene, const Bvh& bvh,
+                                         const DeviceOptions& options) {
+  return std::make_unique<OpenClDevice>(selector, scene, bvh, options);
+}
+
+}  // namespace sightline

@@ -1,0 +1,68 @@
+#include "core/device/opencl_set.h"
+
+#include "core/device/host_set.h"
+#include "core/error.h"
+
+namespace sightline {
+namespace {
+
+/// Largest table: 2^31 slots of two words.
+constexpr uint32_t kLargestCapacity = 1u << 31;
+
+}  // namespace
+
+OpenClSet::OpenClSet(OpenClContext& context, uint32_t triangle_count, bool hash)
+    : context_(context),
+      rehash_(context.kernel("rehash")),
+      fresh_words_((triangle_count + 31) / 32),
+      slots_(triangle_count),
+      fresh_(context.buffer(uint64_t(fresh_words_) * 4, "bits of new triangles")),
+      overflow_(context.buffer(4, "set's overflow flag")) {
+  if (hash) {
+    allocate(kFirstHashCapacity);
+  } else {
+    keys_ = context.buffer(0, "keys of the set");
+    winner_ = context.buffer(uint64_t(slots_) * 4, "set");
+  }
+  clear();
+}
+
+void OpenClSet::allocate(uint32_t capacity) {
+  capacity_ = slots_ = capacity;
+  keys_ = context_.buffer(uint64_t(capacity) * 4, "keys of the hash set");
+  winner_ = context_.buffer(uint64_t(capacity) * 4, "hash set");
+}
+
+void OpenClSet::clear() {
+  if (capacity_ > 0) context_.fill(keys_, kNoTriangle, uint64_t(slots_) * 4);
+  context_.fill(winner_, kSlotEmpty, uint64_t(slots_) * 4);
+  context_.fill(fresh_, 0, uint64_t(fresh_words_) * 4);
+  context_.fill(overflow_, 0, 4);
+}
+
+bool OpenClSet::takeOverflow() {
+  uint32_t count = 0;
+  context_.read(overflow_, &count, 4);
+  if (count != 0) context_.fill(overflow_, 0, 4);
+  return count != 0;
+}
+
+void OpenClSet::grow(uint32_t factor) {
+  const ClBuffer old_keys = std::move(keys_), old_winner = std::move(winner_);
+  const uint32_t old_capacity = capacity_;
+  for (uint64_t capacity = uint64_t(old_capacity) * factor;; capacity *= 2) {
+    if (capacity > kLargestCapacity) throw Error("the hash set of found triangles is full: use --set array");
+    allocate(static_cast<uint32_t>(capacity));
+    context_.fill(keys_, kNoTriangle, capacity * 4);
+    context_.fill(winner_, kSlotEmpty, capacity * 4);
+    context_.launch(rehash_, old_capacity, 64, old_keys, old_winner, old_capacity, keys_, winner_, fresh_,
+                    overflow_, capacity_);
+    if (!takeOverflow()) return;
+  }
+}
+
+void OpenClSet::fit(uint32_t size) {
+  while (capacity_ > 0 && uint64_t(size) * 2 > capacity_) grow(2);
+}
+
+}  // namespace sightline

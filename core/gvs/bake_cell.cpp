@@ -1,0 +1,297 @@
+#include "core/gvs/bake_cell.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/gvs/random_segment.h"
+#include "core/scene/contained.h"
+#include "core/shared/border.h"
+#include "core/shared/halton.h"
+#include "core/shared/reverse.h"
+
+namespace sightline {
+namespace {
+
+/// Rays of one random launch at most: a second or so on a slow device, for progress and interruption.
+constexpr uint32_t kRandomLaunchRays = 1u << 22;
+
+/// splitmix64 (Steele, Lea and Flood 2014): a bijection that mixes all bits.
+uint64_t splitmix(uint64_t x) {
+  x += 0x9e3779b97f4a7c15u;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+/// Random shifts of the four Halton bases, each below its period. use: 0 sampling, 1 validation.
+uvec4 haltonShifts(uint64_t seed, uint32_t cell_index, uint32_t use) {
+  const uint64_t key = splitmix(splitmix(splitmix(seed) ^ cell_index) ^ use);
+  const auto shift = [&](uint32_t base, uint64_t period) {
+    return static_cast<uint32_t>(splitmix(key ^ base) % period);
+  };
+  return {shift(2, uint64_t(1) << 32), shift(3, kHaltonPeriod3), shift(5, kHaltonPeriod5),
+          shift(7, kHaltonPeriod7)};
+}
+
+/// Shares of `total` in proportion to the faces' areas; they add up to total exactly (largest remainders,
+/// ties to the lower face).
+std::vector<uint32_t> raysByArea(std::span<const Face> faces, uint32_t total) {
+  std::vector<double> areas;
+  for (const Face& face : faces) {
+    areas.push_back(double(length3(xyz3(face.edge_u))) * double(length3(xyz3(face.edge_v))));
+  }
+  const double whole = std::accumulate(areas.begin(), areas.end(), 0.0);
+  std::vector<uint32_t> counts;
+  std::vector<std::pair<double, size_t>> remainders;
+  uint32_t assigned = 0;
+  for (size_t f = 0; f < faces.size(); ++f) {
+    const double exact = total * (areas[f] / whole);
+    counts.push_back(static_cast<uint32_t>(exact));
+    assigned += counts.back();
+    remainders.push_back({counts.back() - exact, f});
+  }
+  std::sort(remainders.begin(), remainders.end());
+  for (size_t i = 0; assigned < total; ++i, ++assigned) ++counts[remainders[i % faces.size()].second];
+  return counts;
+}
+
+void checkParams(const BakeParams& p) {
+  const auto require = [](bool good, const char* line) {
+    if (!good) throw Error(line, kExitUsage);
+  };
+  require(p.n_rand >= 1 && p.n_rand <= 0xfffffffdu, "n-rand must be 1 .. 4294967293");
+  require(p.n_abs_edge <= 1000, "n-abs-edge must be 0 .. 1000");
+  require(p.n_rs_edge <= 1000, "n-rs-edge must be 0 .. 1000");
+  require(p.n_rs_area <= 100'000, "n-rs-area must be 0 .. 100000");
+  require(p.batch_rays >= 4096 && p.batch_rays <= 1u << 28, "batch-rays must be 4096 .. 268435456");
+  require(p.quiet_iterations >= 1, "quiet-iterations must be at least 1");
+  const auto distance = [](float x) { return std::isfinite(x) && x >= 0; };
+  require(distance(p.delta_abs) && distance(p.delta_abs_relative) && p.delta_abs + p.delta_abs_relative > 0,
+          "delta-abs and delta-abs-relative must be finite, not negative, and one of them above 0");
+  require(distance(p.delta_rs) && distance(p.delta_rs_relative),
+          "delta-rs and delta-rs-relative must be finite and not negative");
+  require(std::isfinite(p.max_seconds) && p.max_seconds >= 0, "max-seconds must be finite and not negative");
+}
+
+/// One cell's bake in progress.
+class CellBake {
+ public:
+  CellBake(Device& device, const BakeParams& params, std::vector<Face> faces, uint32_t cell_index,
+           const ProgressCallback& progress, const std::atomic<bool>* stop)
+      : device_(device),
+        params_(params),
+        faces_(std::move(faces)),
+        cell_index_(cell_index),
+        callback_(progress),
+        stop_(stop),
+        face_rays_(raysByArea(faces_, params.n_rand)) {
+    stage_params_.counts = uvec4(params.n_abs_edge, params.n_rs_edge, params.n_rs_area, faces_.size());
+    stage_params_.shifts = haltonShifts(params.seed, cell_index, 0);
+    stage_params_.distances =
+        vec4(params.delta_abs_relative, params.delta_abs, params.delta_rs_relative, params.delta_rs);
+    device_.beginCell(faces_, stage_params_);
+  }
+
+  /// Everything up to the stop rule; fills stats but for validation.
+  void run(std::span<const uint32_t> contained) {
+    device_.insertContained(contained);
+    stats_.contained_triangles = contained.size();
+    pvs_size_ = explored_ = static_cast<uint32_t>(contained.size());
+    uint32_t quiet = 0;
+    for (bool more = true; more;) {
+      ++stats_.iterations;
+      iteration_new_ = 0;
+      more = sampleRandom() && explore();
+      quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
+      if (quiet >= params_.quiet_iterations) more = false;
+    }
+  }
+
+  /// Fresh random rays of other shifts; counts those that hit something outside the set.
+  void validate() {
+    validating_ = true;
+    const uvec4 shifts = haltonShifts(params_.seed, cell_index_, 1);
+    uint64_t first = 0;
+    for (uint64_t left = params_.validation_rays; left > 0;) {
+      const auto round = static_cast<uint32_t>(std::min<uint64_t>(left, 1u << 30));
+      const std::vector<uint32_t> counts = raysByArea(faces_, round);
+      forEachSegment(counts, first, [&](const RandomSegment& segment) {
+        stats_.missing_rays += device_.countMissing(segment, shifts);
+        stats_.validation_rays += segment.range.w;
+        report(kStageRandom);
+        return true;
+      });
+      first += round;
+      left -= round;
+    }
+  }
+
+  const CellStats& stats() {
+    stats_.seconds = seconds();
+    return stats_;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
+
+  /// Calls launch for the runs of the sequence that cover counts[f] rays of each face, starting at point
+  /// `first`; stops early when it returns false.
+  template <typename Launch>
+  bool forEachSegment(const std::vector<uint32_t>& counts, uint64_t first, Launch&& launch) {
+    uint32_t ray_index = 1;
+    for (uint32_t f = 0; f < counts.size(); ++f) {
+      for (uint32_t left = counts[f]; left > 0;) {
+        const uint32_t count = std::min(left, kRandomLaunchRays);
+        if (!launch(makeRandomSegment(f, first, count, ray_index))) return false;
+        first += count;
+        ray_index += count;
+        left -= count;
+      }
+    }
+    return true;
+  }
+
+  /// One iteration's random rays. false: a limit was reached.
+  bool sampleRandom() {
+    const auto start = Clock::now();
+    const bool more = forEachSegment(face_rays_, next_point_, [&](const RandomSegment& segment) {
+      device_.traceRandom(segment);
+      random_left_ = params_.n_rand - (segment.batch.x - 1 + segment.range.w);
+      return finishLaunch(kStageRandom, stats_.random);
+    });
+    next_point_ += params_.n_rand;
+    close(kStageRandom, stats_.random, start);
+    return more;
+  }
+
+  /// Border and reverse rays until no unexplored triangle is left. false: a limit was reached.
+  bool explore() {
+    const uint32_t entries_per_batch = std::max(1u, params_.batch_rays / borderRayCount(stage_params_));
+    while (explored_ < pvs_size_) {
+      const auto start = Clock::now();
+      const uint32_t count = std::min(entries_per_batch, pvs_size_ - explored_);
+      const uint32_t discontinuities = device_.traceBorder(explored_, count);
+      const bool more = finishLaunch(kStageBorder, stats_.border);
+      close(kStageBorder, stats_.border, start);
+      if (!more || !reverse(discontinuities)) return false;
+      explored_ += count;
+    }
+    return true;
+  }
+
+  bool reverse(uint32_t discontinuities) {
+    const uint32_t per_item = reverseRayCount(stage_params_);
+    if (per_item == 0) return true;
+    const uint32_t items_per_batch = std::max(1u, params_.batch_rays / per_item);
+    for (uint32_t item = 0; item < discontinuities;) {
+      const auto start = Clock::now();
+      const uint32_t count = std::min(items_per_batch, discontinuities - item);
+      device_.traceReverse(item, count);
+      const bool more = finishLaunch(kStageReverse, stats_.reverse);
+      close(kStageReverse, stats_.reverse, start);
+      if (!more) return false;
+      item += count;
+    }
+    return true;
+  }
+
+  /// Books the rays of a launch. false: a limit was reached.
+  bool finishLaunch(uint32_t stage, StageStats& stats) {
+    const DeviceCounters counters = device_.counters();
+    stats.rays += counters.rays - rays_;
+    rays_ = counters.rays;
+    stats_.peak_device_bytes = std::max(stats_.peak_device_bytes, counters.memory_bytes);
+    report(stage);
+    if (params_.max_rays > 0 && rays_ >= params_.max_rays) stats_.stop = StopReason::kRayLimit;
+    if (params_.max_seconds > 0 && seconds() >= params_.max_seconds) stats_.stop = StopReason::kTimeLimit;
+    return stats_.stop == StopReason::kConverged;
+  }
+
+  /// Ends a batch: its new triangles join the list.
+  void close(uint32_t stage, StageStats& stats, Clock::time_point start) {
+    const uint32_t found = device_.collect(stage);
+    stats.new_triangles += found;
+    pvs_size_ += found;
+    iteration_new_ += found;
+    stats.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+  }
+
+  void report(uint32_t stage) {
+    if (stop_ != nullptr && *stop_) throw Interrupted{};
+    if (!callback_) return;
+    BakeProgress p;
+    p.iteration = stats_.iterations;
+    p.stage = stage;
+    p.validating = validating_;
+    p.rays = rays_ + stats_.validation_rays;
+    p.pvs_size = pvs_size_;
+    p.new_triangles = iteration_new_;
+    p.queued = pvs_size_ - explored_;
+    p.seconds = seconds();
+    const double per_entry = explored_ == 0 ? double(borderRayCount(stage_params_))
+                                            : double(stats_.border.rays + stats_.reverse.rays) / explored_;
+    const double due = double(random_left_) + double(p.queued) * per_entry +
+                       double(params_.validation_rays - stats_.validation_rays);
+    p.seconds_left = p.rays == 0 ? 0 : due * p.seconds / double(p.rays);
+    callback_(p);
+  }
+
+  Device& device_;
+  const BakeParams& params_;
+  std::vector<Face> faces_;
+  uint32_t cell_index_;
+  const ProgressCallback& callback_;
+  const std::atomic<bool>* stop_;
+  std::vector<uint32_t> face_rays_;  ///< random rays of an iteration, by face
+  StageParams stage_params_{};
+  CellStats stats_;
+  Clock::time_point start_ = Clock::now();
+  uint64_t next_point_ = 0;  ///< of the Halton sequence; never restarts
+  uint64_t rays_ = 0;
+  uint32_t random_left_ = 0;  ///< random rays of this iteration still to trace
+  uint32_t pvs_size_ = 0;
+  uint32_t explored_ = 0;  ///< entries of the list that need no more exploration
+  uint32_t iteration_new_ = 0;
+  bool validating_ = false;
+};
+
+/// Sorts the list by triangle into set and witnesses.
+void fillSet(const std::vector<PvsEntry>& entries, CellPvs& pvs) {
+  std::vector<uint32_t> order(entries.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return entries[a].origin_triangle.w < entries[b].origin_triangle.w;
+  });
+  const auto point = [](uvec4 bits) {
+    return vec3(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z));
+  };
+  pvs.triangles.reserve(order.size());
+  pvs.witnesses.reserve(order.size());
+  for (const uint32_t i : order) {
+    pvs.triangles.push_back(entries[i].origin_triangle.w);
+    pvs.witnesses.push_back(
+        {point(entries[i].origin_triangle), point(entries[i].direction_stage), entries[i].direction_stage.w});
+  }
+}
+
+}  // namespace
+
+CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
+                 const BakeParams& params, const ProgressCallback& progress, const std::atomic<bool>* stop) {
+  checkParams(params);
+  CellPvs pvs;
+  pvs.cell = cell;
+  CellBake bake(device, params, cellFaces(cell), cell_index, progress, stop);
+  bake.run(containedTriangles(scene, cell));
+  bake.validate();
+  fillSet(device.readPvs(), pvs);
+  pvs.stats = bake.stats();
+  return pvs;
+}
+
+}  // namespace sightline
