@@ -4,14 +4,11 @@
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <optional>
 
 #include "core/error.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
+#include "core/scene/file_io.h"
 
 namespace sightline {
 namespace {
@@ -23,16 +20,9 @@ struct Section {
   uint64_t end = 0;     ///< of the byte after it
 };
 
-Bytes readFile(const std::filesystem::path& file) {
-  std::error_code problem;
-  const auto size = std::filesystem::file_size(file, problem);  // fails for folders and pipes
-  if (problem) throw Error(fmt::format("{}: cannot open: {}", file.string(), problem.message()));
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw Error(fmt::format("{}: cannot open: {}", file.string(), std::strerror(errno)));
-  Bytes bytes(size);
-  in.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(size));
-  if (uint64_t(in.gcount()) != size) throw Error(fmt::format("{}: cannot read all of it", file.string()));
-  return bytes;
+Bytes readBytes(const std::filesystem::path& file) {
+  const FileBytes content = readFile(file);
+  return Bytes(content.data.get(), content.data.get() + content.size);
 }
 
 [[noreturn]] void failAt(const std::filesystem::path& file, uint64_t offset, const std::string& problem) {
@@ -92,8 +82,7 @@ void readCell(const Section& section, PvsFile& pvs) {
 
 }  // namespace
 
-PvsFile loadPvs(const std::filesystem::path& file) {
-  const Bytes bytes = readFile(file);
+PvsFile parsePvs(const Bytes& bytes, const std::filesystem::path& file) {
   checkPrelude(bytes, file);
   PvsFile pvs;
   uint64_t offset = kPvsPreludeBytes;
@@ -113,8 +102,12 @@ PvsFile loadPvs(const std::filesystem::path& file) {
   return pvs;
 }
 
+PvsFile loadPvs(const std::filesystem::path& file) {
+  return parsePvs(readBytes(file), file);
+}
+
 PartialPvs loadPartialPvs(const std::filesystem::path& part) {
-  const Bytes bytes = readFile(part);
+  const Bytes bytes = readBytes(part);
   PartialPvs left;
   if (bytes.size() >= kPvsPreludeBytes) checkPrelude(bytes, part);
   try {
@@ -136,7 +129,8 @@ void savePvs(const PvsFile& pvs, const std::filesystem::path& file) {
   auto temporary = file;
   temporary += ".tmp";
   try {
-    PvsWriter writer(temporary, pvs);
+    PvsWriter writer(temporary);
+    writer.begin(pvs);
     for (const CellPvs& cell : pvs.cells) writer.append(cell);
     writer.finish(file);
   } catch (...) {
@@ -144,16 +138,6 @@ void savePvs(const PvsFile& pvs, const std::filesystem::path& file) {
     std::filesystem::remove(temporary, ignored);
     throw;
   }
-}
-
-uint64_t hashResult(const PvsFile& pvs) {
-  ByteWriter out;
-  for (const CellPvs& cell : pvs.cells) {
-    const auto& ids = cell.triangles;
-    out.number(uint64_t(ids.size()));
-    out.number(uint64_t(XXH3_64bits(ids.data(), ids.size() * sizeof(uint32_t))));
-  }
-  return XXH3_64bits(out.bytes().data(), out.bytes().size());
 }
 
 }  // namespace sightline

@@ -93,7 +93,4 @@ void savePvs(const PvsFile& pvs, const std::filesystem::path& file);
 /// Throws Error unless `pvs`, read from `file`, was baked of this scene (hash and number of triangles).
 void requireScene(const PvsFile& pvs, const Scene& scene, const std::filesystem::path& file);
 
-/// XXH3 of the sets alone: equal for two bakes that found the same, whatever the device and the time taken.
-uint64_t hashResult(const PvsFile& pvs);
-
 }  // namespace sightline

@@ -1,4 +1,5 @@
 #pragma once
+#include <filesystem>
 #include <span>
 #include <string>
 
@@ -37,5 +38,8 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload);
 /// head: for planned cells and the limit of ids; index: that the section must have.
 CellPvs readCellPayload(std::span<const uint8_t> payload, const PvsFile& head, uint32_t index);
 void checkEndPayload(std::span<const uint8_t> payload, uint32_t cells, uint64_t checksum);
+
+/// A whole file in memory; `file` is for messages. Throws Error.
+PvsFile parsePvs(const Bytes& bytes, const std::filesystem::path& file);
 
 }  // namespace sightline

@@ -44,7 +44,6 @@ struct DescriptorGuard {
 PvsWriter::PvsWriter(const std::filesystem::path& part)
     : part_(part), checksum_(XXH3_createState(), &XXH3_freeState) {
   if (!checksum_) throw std::bad_alloc();
-  XXH3_64bits_reset(checksum_.get());
   DescriptorGuard guard{::open(part.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)};
   if (guard.descriptor < 0) failOn(part, "create");
   if (::flock(guard.descriptor, LOCK_EX | LOCK_NB) != 0 || !sameFile(guard.descriptor, part)) {
@@ -54,27 +53,36 @@ PvsWriter::PvsWriter(const std::filesystem::path& part)
   std::swap(descriptor_, guard.descriptor);
 }
 
-PvsWriter::PvsWriter(const std::filesystem::path& part, const PvsFile& head) : PvsWriter(part) {
-  if (::ftruncate(descriptor_, 0) != 0) failOn(part, "empty");
+PvsWriter::~PvsWriter() {
+  struct stat status = {};
+  if (::fstat(descriptor_, &status) == 0 && status.st_size == 0) ::unlink(part_.c_str());
+  ::close(descriptor_);
+}
+
+void PvsWriter::begin(const PvsFile& head) {
+  if (::ftruncate(descriptor_, 0) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0) failOn(part_, "empty");
+  XXH3_64bits_reset(checksum_.get());
+  cells_ = 0;
+  has_witnesses_ = head.has_witnesses;
   write(writePrelude());
   write(writeSection(kSectionHead, writeHeadPayload(head)));
 }
 
-PvsWriter::PvsWriter(const std::filesystem::path& part, const PartialPvs& left) : PvsWriter(part) {
+void PvsWriter::goOn(const PartialPvs& left) {
+  if (::ftruncate(descriptor_, off_t(left.whole_bytes)) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0) {
+    failOn(part_, "cut");
+  }
+  XXH3_64bits_reset(checksum_.get());
   cells_ = uint32_t(left.pvs.cells.size());
-  if (::ftruncate(descriptor_, off_t(left.whole_bytes)) != 0) failOn(part, "cut");
+  has_witnesses_ = left.pvs.has_witnesses;
   std::vector<char> chunk(kHashChunk);
   for (uint64_t todo = left.whole_bytes; todo != 0;) {
     const ssize_t got = ::read(descriptor_, chunk.data(), size_t(std::min<uint64_t>(todo, chunk.size())));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) failOn(part, "read");
+    if (got <= 0) failOn(part_, "read");
     XXH3_64bits_update(checksum_.get(), chunk.data(), size_t(got));
     todo -= uint64_t(got);
   }
-}
-
-PvsWriter::~PvsWriter() {
-  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void PvsWriter::write(const Bytes& bytes) {
@@ -84,6 +92,10 @@ void PvsWriter::write(const Bytes& bytes) {
 }
 
 void PvsWriter::append(const CellPvs& cell) {
+  if (cell.witnesses.size() != (has_witnesses_ ? cell.triangles.size() : 0)) {
+    throw Error(fmt::format("{}: cell {} has {} witnesses for {} triangles: an error of this program",
+                            part_.string(), cell.cell.name, cell.witnesses.size(), cell.triangles.size()));
+  }
   write(writeSection(kSectionCell, writeCellPayload(cell, cells_)));
   ++cells_;
 }

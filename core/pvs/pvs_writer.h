@@ -21,29 +21,32 @@ PartialPvs loadPartialPvs(const std::filesystem::path& part);
 
 /// Writes a .pvs file cell by cell. Cells are appended to a part file, each with its checksum and flushed
 /// to the disk, so that a kill at any moment loses at most the cell in work; finish() completes the file and
-/// renames it. The part file is locked against a second writer. All throw Error.
+/// renames it. All throw Error.
 class PvsWriter {
  public:
-  /// Starts over: cuts `part` to nothing and writes the head. head.cells is not written.
-  PvsWriter(const std::filesystem::path& part, const PvsFile& head);
-  /// Goes on after what loadPartialPvs found; cuts off the torn rest.
-  PvsWriter(const std::filesystem::path& part, const PartialPvs& left);
+  /// Opens the part file, or makes it, and locks it against a second writer; changes nothing in it.
+  explicit PvsWriter(const std::filesystem::path& part);
+  /// Removes the part file if nothing was ever written to it.
   ~PvsWriter();
   PvsWriter(const PvsWriter&) = delete;
   PvsWriter& operator=(const PvsWriter&) = delete;
 
-  /// Cells must come in the order planned.
+  /// Starts over: cuts the part file to nothing and writes the head. head.cells is not written.
+  void begin(const PvsFile& head);
+  /// Goes on after what loadPartialPvs found; cuts off the torn rest.
+  void goOn(const PartialPvs& left);
+  /// Cells must come in the order planned, with witnesses if the head says so.
   void append(const CellPvs& cell);
   /// Ends the file and gives it its name.
   void finish(const std::filesystem::path& file);
 
  private:
-  explicit PvsWriter(const std::filesystem::path& part);
   void write(const Bytes& bytes);
 
   std::filesystem::path part_;
   int descriptor_ = -1;
   uint32_t cells_ = 0;
+  bool has_witnesses_ = false;
   std::unique_ptr<XXH3_state_t, decltype(&XXH3_freeState)> checksum_;
 };
 

@@ -43,15 +43,21 @@ void expectEqual(const PvsFile& got, const PvsFile& want) {
   for (size_t i = 0; i < want.cells.size(); ++i) expectEqual(got.cells[i], want.cells[i]);
 }
 
-/// The message of the Error that loading `bytes` throws; empty if it loads.
-std::string loadProblem(const std::filesystem::path& file, const std::vector<uint8_t>& bytes) {
-  writeBytes(file, bytes);
+/// The message of the Error that reading `bytes` throws; empty if they are sound.
+std::string problemOf(const std::vector<uint8_t>& bytes) {
   try {
-    loadPvs(file);
+    parsePvs(bytes, "y.pvs");
     return "";
   } catch (const Error& error) {
     return error.what();
   }
+}
+
+/// The bytes of the example's file.
+std::vector<uint8_t> exampleBytes() {
+  TemporaryFolder folder;
+  savePvs(examplePvs(), folder / "x.pvs");
+  return readBytes(folder / "x.pvs");
 }
 
 /// Sets the section's checksum right, so that a reader must find the lie by itself.
@@ -82,47 +88,40 @@ TEST(PvsFile, LeavesNothingBesideIt) {
 }
 
 TEST(PvsFile, EveryFlippedBitIsAnError) {
-  TemporaryFolder folder;
-  savePvs(examplePvs(), folder / "x.pvs");
-  auto bytes = readBytes(folder / "x.pvs");
+  auto bytes = exampleBytes();
   for (size_t i = 0; i < bytes.size(); ++i) {
     for (unsigned bit : {0u, 3u, 7u}) {
       bytes[i] ^= uint8_t(1u << bit);
-      EXPECT_NE(loadProblem(folder / "y.pvs", bytes), "") << "byte " << i << " bit " << bit;
+      EXPECT_NE(problemOf(bytes), "") << "byte " << i << " bit " << bit;
       bytes[i] ^= uint8_t(1u << bit);
     }
   }
 }
 
 TEST(PvsFile, EveryTruncationAndEveryExtraByteIsAnError) {
-  TemporaryFolder folder;
-  savePvs(examplePvs(), folder / "x.pvs");
-  auto bytes = readBytes(folder / "x.pvs");
+  auto bytes = exampleBytes();
   bytes.push_back(0);
-  EXPECT_NE(loadProblem(folder / "y.pvs", bytes), "");
+  EXPECT_NE(problemOf(bytes), "");
   bytes.pop_back();
   while (!bytes.empty()) {
     bytes.pop_back();
-    EXPECT_NE(loadProblem(folder / "y.pvs", bytes), "") << "size " << bytes.size();
+    EXPECT_NE(problemOf(bytes), "") << "size " << bytes.size();
   }
 }
 
 TEST(PvsFile, SaysWhatIsWrong) {
-  TemporaryFolder folder;
-  savePvs(examplePvs(), folder / "x.pvs");
-  auto bytes = readBytes(folder / "x.pvs");
+  auto bytes = exampleBytes();
   bytes[8] = 9;
-  EXPECT_NE(loadProblem(folder / "y.pvs", bytes).find("version 9"), std::string::npos);
+  EXPECT_NE(problemOf(bytes).find("version 9"), std::string::npos);
   bytes[0] = 'P';
-  EXPECT_NE(loadProblem(folder / "y.pvs", bytes).find("not a .pvs file"), std::string::npos);
+  EXPECT_NE(problemOf(bytes).find("not a .pvs file"), std::string::npos);
+  TemporaryFolder folder;
   EXPECT_THROW(loadPvs(folder / "missing.pvs"), Error);
   EXPECT_THROW(loadPvs(folder.path()), Error);
 }
 
 TEST(PvsFile, RandomLiesWithRightChecksumsNeverCrash) {
-  TemporaryFolder folder;
-  savePvs(examplePvs(), folder / "x.pvs");
-  const auto good = readBytes(folder / "x.pvs");
+  const auto good = exampleBytes();
   uint64_t head_size = 0;
   std::memcpy(&head_size, good.data() + 24, 8);
   const size_t cell_section = 16 + 16 + head_size + 8;
@@ -137,9 +136,9 @@ TEST(PvsFile, RandomLiesWithRightChecksumsNeverCrash) {
       bytes[section + 16 + random() % size] = random() % 4 ? uint8_t(random()) : uint8_t(0xff);
     }
     fixChecksum(bytes, section);
-    if (loadProblem(folder / "y.pvs", bytes) != "") continue;
+    if (problemOf(bytes) != "") continue;
     ++accepted;  // a lie within the rules: another seed, another time
-    for (const CellPvs& cell : loadPvs(folder / "y.pvs").cells) {
+    for (const CellPvs& cell : parsePvs(bytes, "y.pvs").cells) {
       EXPECT_TRUE(std::ranges::adjacent_find(cell.triangles, std::ranges::greater_equal()) ==
                   cell.triangles.end())
           << "seed 5, round " << round;
@@ -147,6 +146,20 @@ TEST(PvsFile, RandomLiesWithRightChecksumsNeverCrash) {
   }
   EXPECT_GT(accepted, 0);
   EXPECT_LT(accepted, 3000);
+}
+
+TEST(PvsFile, RequiresItsScene) {
+  Scene scene;
+  scene.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  scene.triangles = {{0, 1, 2}};
+  PvsFile pvs;
+  pvs.scene_name = "room.obj";
+  pvs.triangle_count = 2;
+  EXPECT_THROW(requireScene(pvs, scene, "x.pvs"), Error);
+  pvs.triangle_count = 1;
+  EXPECT_THROW(requireScene(pvs, scene, "x.pvs"), Error);
+  pvs.scene_hash = hashScene(scene);
+  EXPECT_NO_THROW(requireScene(pvs, scene, "x.pvs"));
 }
 
 TEST(SetCodec, PacksTheDocumentedExample) {

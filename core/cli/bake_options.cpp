@@ -1,0 +1,107 @@
+#include "core/cli/bake_options.h"
+
+#include <limits>
+#include <map>
+
+namespace sightline {
+namespace {
+
+/// Finite and not negative: CLI11's own range lets "nan" pass.
+CLI::Validator notNegative() {
+  return CLI::Validator(
+      [](std::string& text) {
+        float value = -1;
+        if (CLI::detail::lexical_cast(text, value) && value >= 0 &&
+            value <= std::numeric_limits<float>::max()) {
+          return std::string();
+        }
+        return "must be 0 or more, and finite, not " + text;
+      },
+      "NUMBER");
+}
+
+void declareParams(CLI::App& command, BakeParams& params) {
+  const auto count = [&](const char* name, auto& value, double low, double high, const char* help) {
+    command.add_option(name, value, help)
+        ->check(CLI::Range(low, high))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Parameters (they decide the result)");
+  };
+  const auto number = [&](const char* name, auto& value, const char* help) {
+    command.add_option(name, value, help)
+        ->check(notNegative())
+        ->type_name("X")
+        ->capture_default_str()
+        ->group("Parameters (they decide the result)");
+  };
+  count("--n-rand", params.n_rand, 1, 4294967293.0, "random rays an iteration");
+  count("--n-abs-edge", params.n_abs_edge, 0, 1000, "samples along each long edge of the border polygon");
+  count("--n-rs-edge", params.n_rs_edge, 0, 1000, "reverse samples along each edge of the cell's faces");
+  count("--n-rs-area", params.n_rs_area, 0, 100000, "reverse samples on the cell's faces");
+  number("--delta-abs", params.delta_abs, "border distance in world units (thesis: 0.001), added to");
+  number("--delta-abs-relative", params.delta_abs_relative, "border distance as a share of the distance");
+  number("--delta-rs", params.delta_rs, "discontinuity threshold in world units, added to");
+  number("--delta-rs-relative", params.delta_rs_relative,
+         "discontinuity threshold as a share of the distance");
+  count("--threshold", params.threshold, 0, 4294967295.0, "T: a quiet iteration finds fewer new triangles");
+  count("--quiet-iterations", params.quiet_iterations, 1, 1000000, "stop after so many of them in a row");
+  count("--max-rays", params.max_rays, 0, 1e18, "stop a cell after so many rays (0: no limit)");
+  number("--max-seconds", params.max_seconds, "stop a cell after so many seconds (0: no limit)");
+  count("--batch-rays", params.batch_rays, 4096, 1u << 30, "rays of a border or reverse batch at most");
+  count("--validation-rays", params.validation_rays, 0, 1e15, "rays that measure what a cell missed");
+  command.add_option("--seed", params.seed, "seed of the random rays")
+      ->type_name("N")
+      ->capture_default_str()
+      ->group("Parameters (they decide the result)");
+}
+
+void declareMachine(CLI::App& command, BakeOptions& options) {
+  static const std::map<std::string, SetKind> kSets = {
+      {"auto", SetKind::kAuto}, {"array", SetKind::kArray}, {"hash", SetKind::kHash}};
+  const auto group = [](CLI::Option* option) { option->group("Machine (same result)"); };
+  group(command.add_option("--device", options.device, "cpu, opencl, opencl:INDEX or opencl:PART-OF-NAME")
+            ->type_name("NAME")
+            ->capture_default_str());
+  group(
+      command.add_option("--threads", options.device_options.threads, "of the tree and of cpu; 0: all cores")
+          ->check(CLI::Range(0, 4096))
+          ->type_name("N")
+          ->capture_default_str());
+  group(command
+            .add_option_function<std::string>(
+                "--set",
+                [&options](const std::string& name) {
+                  options.set = name;
+                  options.device_options.set = kSets.at(name);
+                },
+                "how the set is kept: auto, array or hash")
+            ->check(CLI::IsMember({"auto", "array", "hash"}))
+            ->type_name("KIND"));
+  group(command
+            .add_option("--memory-budget", options.device_options.memory_budget_bytes,
+                        "memory that the device may use, e.g. 4GB (0: what it reports)")
+            ->transform(CLI::AsSizeValue(false))
+            ->type_name("BYTES"));
+  group(command.add_flag("--spatial-splits", options.spatial_splits,
+                         "slower build, faster rays in scenes of long triangles"));
+}
+
+}  // namespace
+
+void declareOptions(CLI::App& command, BakeOptions& options) {
+  command.add_option("scene", options.scene, ".obj, .gltf, .glb or .ply")->required()->type_name("SCENE");
+  command.add_option("--cells", options.cells, "view cells, JSON")->required()->type_name("CELLS.json");
+  command.add_option("-o,--output", options.out, "the result; .part is added until it is whole")
+      ->required()
+      ->type_name("OUT.pvs");
+  command.add_option("--report", options.report, "write what was done as JSON (docs/report.md)")
+      ->type_name("R.json");
+  command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
+  command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");
+  command.add_flag("--overwrite", options.overwrite, "replace a bake with other inputs");
+  declareMachine(command, options);
+  declareParams(command, options.params);
+}
+
+}  // namespace sightline

@@ -1,0 +1,123 @@
+#include <fmt/core.h>
+
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+#include "core/cli/commands.h"
+#include "core/pvs/pvs_sections.h"
+#include "core/pvs/pvs_writer.h"
+#include "core/report/text.h"
+#include "core/scene/file_io.h"
+
+namespace sightline {
+namespace {
+
+/// Objects that `info` lists before it says how many more there are.
+constexpr size_t kListedObjects = 20;
+
+void row(const std::string& name, const std::string& value) {
+  std::fputs(fmt::format("{:<16} {}\n", name, value).c_str(), stdout);
+}
+
+std::string point(const glm::dvec3& p) {
+  return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z);
+}
+
+std::string cellLine(const ViewCell& cell) {
+  std::string line = fmt::format("center {}  size {}", point(cell.center), point(cell.size));
+  if (cell.rotation != glm::dvec3(0.0)) line += "  rotation " + point(cell.rotation);
+  return line + (cell.flat() ? "  flat" : "");
+}
+
+bool isPvs(const std::filesystem::path& file) {
+  char start[sizeof(kPvsMagic)] = {};
+  std::ifstream(file, std::ios::binary).read(start, sizeof(start));
+  const std::string extension = lowerExtension(file);
+  return std::memcmp(start, kPvsMagic, sizeof(start)) == 0 || extension == ".pvs" || extension == ".part";
+}
+
+void showScene(const std::filesystem::path& file, bool repair) {
+  const Scene scene = loadScene(file, {.repair = repair});
+  const Bounds bounds = sceneBounds(scene);
+  row("scene", file.string());
+  row("triangles", std::to_string(scene.triangles.size()));
+  row("vertices", std::to_string(scene.positions.size()));
+  row("bounds", point(bounds.low) + " to " + point(bounds.high));
+  row("degenerate",
+      fmt::format("{} triangles without area (kept, cannot be seen)", scene.degenerate_triangles));
+  if (repair) row("repaired", fmt::format("{} triangles dropped", scene.repaired_triangles));
+  if (scene.alpha_triangles != 0) row("alpha", fmt::format("{} triangles", scene.alpha_triangles));
+  if (scene.single_sided_triangles != 0) {
+    row("single-sided", fmt::format("{} triangles", scene.single_sided_triangles));
+  }
+  row("hash", hashText(hashScene(scene)));
+  row("objects", std::to_string(scene.objects.size()));
+  for (size_t i = 0; i < std::min(scene.objects.size(), kListedObjects); ++i) {
+    const SceneObject& object = scene.objects[i];
+    row("", fmt::format("{} (from triangle {}, {} of them)", object.name, object.first_triangle,
+                        object.triangle_count));
+  }
+  if (scene.objects.size() > kListedObjects) {
+    row("", fmt::format("... and {} more", scene.objects.size() - kListedObjects));
+  }
+}
+
+void showCells(const std::filesystem::path& file) {
+  const std::vector<ViewCell> cells = loadCells(file);
+  row("cells", fmt::format("{} in {}", cells.size(), file.string()));
+  for (const ViewCell& cell : cells) row(cell.name, cellLine(cell));
+}
+
+void showParams(const BakeParams& params) {
+  row("seed", std::to_string(params.seed));
+  row("samples", fmt::format("n_rand {}, n_abs_edge {}, n_rs_edge {}, n_rs_area {}", params.n_rand,
+                             params.n_abs_edge, params.n_rs_edge, params.n_rs_area));
+  row("distances",
+      fmt::format("delta_abs {:g} + {:g} of the distance, delta_rs {:g} + {:g} of the distance",
+                  params.delta_abs, params.delta_abs_relative, params.delta_rs, params.delta_rs_relative));
+  row("stop rule",
+      fmt::format("fewer than {} new triangles in {} iterations{}{}", params.threshold,
+                  params.quiet_iterations, params.max_rays ? fmt::format(", {} rays", params.max_rays) : "",
+                  params.max_seconds > 0 ? fmt::format(", {:g} s", params.max_seconds) : ""));
+  row("batch", fmt::format("{} rays", params.batch_rays));
+  row("validation", fmt::format("{} rays", params.validation_rays));
+}
+
+void showPvs(const std::filesystem::path& file) {
+  const bool part = lowerExtension(file) == ".part";
+  const PvsFile pvs = part ? loadPartialPvs(file).pvs : loadPvs(file);
+  const auto cells = summarize(pvs);
+  row("visible sets", fmt::format("{}, format version {}", file.string(), kPvsVersion));
+  row("scene",
+      fmt::format("{}, {} triangles, hash {}", pvs.scene_name, pvs.triangle_count, hashText(pvs.scene_hash)));
+  row("device", pvs.device);
+  showParams(pvs.params);
+  row("witnesses", pvs.has_witnesses ? "yes" : "no");
+  row("result hash", hashText(hashResult(cells)));
+  row("cells", fmt::format("{} of {} baked", cells.size(), pvs.planned.size()));
+  std::fputs(("\n" + cellTable(cells, pvs.triangle_count)).c_str(), stdout);
+}
+
+void runInfo(const std::filesystem::path& file, bool repair) {
+  if (isPvs(file)) {
+    showPvs(file);
+  } else if (lowerExtension(file) == ".json") {
+    showCells(file);
+  } else {
+    showScene(file, repair);
+  }
+}
+
+}  // namespace
+
+void addInfoCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("info", "Say what a scene, cells or .pvs file holds");
+  const auto file = std::make_shared<std::filesystem::path>();
+  const auto repair = std::make_shared<bool>(false);
+  command->add_option("file", *file, "scene, cells file, .pvs or .pvs.part")->required()->type_name("FILE");
+  command->add_flag("--repair", *repair, "drop a scene's broken triangles instead of refusing it");
+  command->callback([file, repair] { runInfo(*file, *repair); });
+}
+
+}  // namespace sightline

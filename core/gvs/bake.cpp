@@ -1,0 +1,143 @@
+#include "core/gvs/bake.h"
+
+#include <fmt/core.h>
+
+#include "core/error.h"
+
+namespace sightline {
+namespace {
+
+template <typename T>
+void compare(std::vector<std::string>& differences, const char* name, const T& earlier, const T& wanted) {
+  if (earlier == wanted) return;
+  differences.push_back(fmt::format("{} ({} there, {} now)", name, earlier, wanted));
+}
+
+bool sameCell(const ViewCell& a, const ViewCell& b) {
+  return a.name == b.name && a.center == b.center && a.size == b.size && a.rotation == b.rotation;
+}
+
+void compareCells(std::vector<std::string>& differences, const std::vector<ViewCell>& earlier,
+                  const std::vector<ViewCell>& wanted) {
+  compare(differences, "number of cells", earlier.size(), wanted.size());
+  for (size_t i = 0; i < std::min(earlier.size(), wanted.size()); ++i) {
+    if (sameCell(earlier[i], wanted[i])) continue;
+    differences.push_back(fmt::format("cell {} ({} there, {} now{})", i, earlier[i].name, wanted[i].name,
+                                      earlier[i].name == wanted[i].name ? ", of another shape" : ""));
+    return;
+  }
+}
+
+/// Throws Error if a bake with other inputs is in the way.
+void requireSameInputs(const PvsFile& earlier, const PvsFile& wanted, const std::filesystem::path& file) {
+  const auto differences = inputDifferences(earlier, wanted);
+  if (differences.empty()) return;
+  std::string list = differences.front();
+  for (size_t i = 1; i < differences.size(); ++i) list += ", " + differences[i];
+  throw Error(fmt::format("{}: holds a bake with other inputs: {}; choose another -o, or --overwrite it",
+                          file.string(), list));
+}
+
+}  // namespace
+
+std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile& wanted) {
+  std::vector<std::string> differences;
+  if (earlier.scene_hash != wanted.scene_hash || earlier.triangle_count != wanted.triangle_count) {
+    differences.push_back(fmt::format("scene ({} with {} triangles there, {} with {} now)",
+                                      earlier.scene_name, earlier.triangle_count, wanted.scene_name,
+                                      wanted.triangle_count));
+  }
+  compareCells(differences, earlier.planned, wanted.planned);
+  const BakeParams &a = earlier.params, &b = wanted.params;
+  compare(differences, "n_rand", a.n_rand, b.n_rand);
+  compare(differences, "n_abs_edge", a.n_abs_edge, b.n_abs_edge);
+  compare(differences, "n_rs_edge", a.n_rs_edge, b.n_rs_edge);
+  compare(differences, "n_rs_area", a.n_rs_area, b.n_rs_area);
+  compare(differences, "delta_abs_relative", a.delta_abs_relative, b.delta_abs_relative);
+  compare(differences, "delta_abs", a.delta_abs, b.delta_abs);
+  compare(differences, "delta_rs_relative", a.delta_rs_relative, b.delta_rs_relative);
+  compare(differences, "delta_rs", a.delta_rs, b.delta_rs);
+  compare(differences, "threshold", a.threshold, b.threshold);
+  compare(differences, "quiet_iterations", a.quiet_iterations, b.quiet_iterations);
+  compare(differences, "max_rays", a.max_rays, b.max_rays);
+  compare(differences, "max_seconds", a.max_seconds, b.max_seconds);
+  compare(differences, "batch_rays", a.batch_rays, b.batch_rays);
+  compare(differences, "validation_rays", a.validation_rays, b.validation_rays);
+  compare(differences, "seed", a.seed, b.seed);
+  compare(differences, "witnesses", earlier.has_witnesses, wanted.has_witnesses);
+  if (differences.empty() && a != b) differences.push_back("parameters");  // one that this list lacks
+  return differences;
+}
+
+Bake::Bake(PvsFile wanted, std::filesystem::path file, bool overwrite)
+    : head_(std::move(wanted)), file_(std::move(file)), part_(file_) {
+  head_.cells.clear();
+  part_ += ".part";
+  if (std::filesystem::is_directory(file_)) {
+    throw Error(fmt::format("{}: is a folder; name a file to write", file_.string()));
+  }
+  if (!overwrite && openComplete()) return;
+  writer_ = std::make_unique<PvsWriter>(part_);
+  try {
+    goOnAfterPart();
+  } catch (const Error&) {
+    if (!overwrite) throw;
+  }
+}
+
+bool Bake::openComplete() {
+  if (!std::filesystem::exists(file_)) return false;
+  PvsFile earlier;
+  try {
+    earlier = loadPvs(file_);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{} (choose another -o, or --overwrite it)", error.what()));
+  }
+  requireSameInputs(earlier, head_, file_);
+  if (earlier.cells.size() != earlier.planned.size()) return false;
+  finished_ = summarize(earlier);
+  resumed_ = finished_.size();
+  head_.device = earlier.device;
+  complete_ = true;
+  return true;
+}
+
+void Bake::goOnAfterPart() {
+  const PartialPvs left = loadPartialPvs(part_);
+  if (left.whole_bytes == 0) return;
+  requireSameInputs(left.pvs, head_, part_);
+  writer_->goOn(left);
+  begun_ = true;
+  finished_ = summarize(left.pvs);
+  resumed_ = finished_.size();
+  head_.device = left.pvs.device;
+}
+
+bool Bake::run(const std::string& device, const CellBaker& baker, const BakeEvents& events,
+               const std::atomic<bool>* stop) {
+  if (complete_) return true;
+  if (!begun_) {
+    head_.device = device;
+    writer_->begin(head_);
+    begun_ = true;
+  }
+  while (finished_.size() < head_.planned.size()) {
+    const auto index = uint32_t(finished_.size());
+    if (stop && *stop) return false;
+    try {
+      const CellPvs pvs = baker(head_.planned[index], index, [&](const BakeProgress& progress) {
+        if (events.progress) events.progress(index, progress);
+      });
+      writer_->append(pvs);
+      finished_.push_back(summarize(pvs));
+      if (events.cell_done) events.cell_done(index, pvs);
+    } catch (const Interrupted&) {
+      return false;
+    }
+  }
+  writer_->finish(file_);
+  complete_ = true;
+  return true;
+}
+
+}  // namespace sightline

@@ -1,0 +1,50 @@
+#include "core/pvs/cell_summary.h"
+
+#include <xxhash.h>
+
+#include "core/pvs/byte_stream.h"
+
+namespace sightline {
+
+double CellSummary::mraysPerSecond() const {
+  const double seconds = stats.random.seconds + stats.border.seconds + stats.reverse.seconds;
+  return seconds > 0 ? double(rays()) / seconds * 1e-6 : 0;
+}
+
+double CellSummary::missingShare() const {
+  return stats.validation_rays == 0 ? 0 : double(stats.missing_rays) / double(stats.validation_rays);
+}
+
+CellSummary summarize(const CellPvs& pvs) {
+  const auto& ids = pvs.triangles;
+  return {pvs.cell, pvs.stats, uint32_t(ids.size()), XXH3_64bits(ids.data(), ids.size() * sizeof(uint32_t))};
+}
+
+std::vector<CellSummary> summarize(const PvsFile& pvs) {
+  std::vector<CellSummary> cells;
+  for (const CellPvs& cell : pvs.cells) cells.push_back(summarize(cell));
+  return cells;
+}
+
+uint64_t hashResult(std::span<const CellSummary> cells) {
+  ByteWriter out;
+  for (const CellSummary& cell : cells) {
+    out.number(uint64_t(cell.pvs_size));
+    out.number(cell.set_hash);
+  }
+  return XXH3_64bits(out.bytes().data(), out.bytes().size());
+}
+
+std::string stopReasonName(StopReason reason) {
+  switch (reason) {
+    case StopReason::kConverged:
+      return "converged";
+    case StopReason::kRayLimit:
+      return "ray limit";
+    case StopReason::kTimeLimit:
+      return "time limit";
+  }
+  return "unknown";
+}
+
+}  // namespace sightline

@@ -1,0 +1,49 @@
+#include "core/report/cell_json.h"
+
+#include "core/report/text.h"
+
+namespace sightline {
+namespace {
+
+Json toJson(const glm::dvec3& vector) {
+  return {vector.x, vector.y, vector.z};
+}
+
+Json toJson(const StageStats& stage) {
+  return {{"rays", stage.rays}, {"new_triangles", stage.new_triangles}, {"seconds", stage.seconds}};
+}
+
+}  // namespace
+
+Json cellToJson(const ViewCell& cell) {
+  return {{"name", cell.name},
+          {"center", toJson(cell.center)},
+          {"size", toJson(cell.size)},
+          {"rotation", toJson(cell.rotation)}};
+}
+
+void addCellStatistics(Json& json, const CellSummary& cell, uint64_t triangles) {
+  const CellStats& stats = cell.stats;
+  json["pvs_size"] = cell.pvs_size;
+  json["pvs_share"] = triangles == 0 ? 0.0 : double(cell.pvs_size) / double(triangles);
+  json["set_hash"] = hashText(cell.set_hash);
+  json["iterations"] = stats.iterations;
+  json["stop_reason"] = stopReasonName(stats.stop);
+  json["rays"] = cell.rays();
+  json["mrays_per_s"] = cell.mraysPerSecond();
+  json["seconds"] = stats.seconds;
+  json["stages"] = {
+      {"random", toJson(stats.random)}, {"border", toJson(stats.border)}, {"reverse", toJson(stats.reverse)}};
+  json["contained_triangles"] = stats.contained_triangles;
+  json["validation_rays"] = stats.validation_rays;
+  json["missing_rays"] = stats.missing_rays;
+  json["missing_share"] = cell.missingShare();
+  json["missing_upper_bound_95"] = cell.missingBound();
+  json["peak_device_bytes"] = stats.peak_device_bytes;
+}
+
+std::string jsonText(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace sightline

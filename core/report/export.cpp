@@ -1,0 +1,102 @@
+#include "core/report/export.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <iterator>
+
+#include "core/error.h"
+#include "core/report/cell_json.h"
+#include "core/report/text.h"
+
+namespace sightline {
+namespace {
+
+/// Cells that an error message lists.
+constexpr size_t kListedCells = 10;
+
+Json objectsJson(const Scene& scene, const CellPvs& cell) {
+  Json objects = Json::array();
+  auto id = cell.triangles.begin();
+  for (const SceneObject& object : scene.objects) {
+    const auto first = id;
+    while (id != cell.triangles.end() && *id - object.first_triangle < object.triangle_count) ++id;
+    objects.push_back({{"name", object.name},
+                       {"first_triangle", object.first_triangle},
+                       {"triangles", object.triangle_count},
+                       {"visible", uint64_t(id - first)}});
+  }
+  return objects;
+}
+
+/// Copies the object's visible triangles, from `id` on; new_index: of each vertex, or kNoTriangle.
+void copyObject(const Scene& scene, const SceneObject& object, const CellPvs& cell, size_t& id,
+                std::vector<uint32_t>& new_index, Scene& visible) {
+  const auto first = uint32_t(visible.triangles.size());
+  for (; id < cell.triangles.size(); ++id) {
+    const uint32_t triangle = cell.triangles[id];
+    if (triangle - object.first_triangle >= object.triangle_count) break;
+    glm::uvec3 corners = scene.triangles[triangle];
+    for (int corner = 0; corner < 3; ++corner) {
+      uint32_t& index = new_index[corners[corner]];
+      if (index == kNoTriangle) {
+        index = uint32_t(visible.positions.size());
+        visible.positions.push_back(scene.positions[corners[corner]]);
+      }
+      corners[corner] = index;
+    }
+    visible.triangles.push_back(corners);
+  }
+  const auto count = uint32_t(visible.triangles.size()) - first;
+  if (count != 0) visible.objects.push_back({object.name, first, count});
+}
+
+}  // namespace
+
+const CellPvs& findCell(const PvsFile& pvs, const std::string& name_or_index) {
+  for (const CellPvs& cell : pvs.cells) {
+    if (cell.cell.name == name_or_index) return cell;
+  }
+  size_t index = 0;
+  const char* end = name_or_index.data() + name_or_index.size();
+  const auto parsed = std::from_chars(name_or_index.data(), end, index);
+  if (parsed.ec == std::errc() && parsed.ptr == end && index < pvs.cells.size()) return pvs.cells[index];
+  std::string names;
+  for (size_t i = 0; i < std::min(pvs.cells.size(), kListedCells); ++i) {
+    names += fmt::format("{}{} {}", i == 0 ? "" : ", ", i, pvs.cells[i].cell.name);
+  }
+  if (pvs.cells.size() > kListedCells) names += ", ...";
+  throw Error(fmt::format("no cell \"{}\"; there are {}: {}", name_or_index, pvs.cells.size(), names),
+              kExitUsage);
+}
+
+std::string idsText(const CellPvs& cell) {
+  fmt::memory_buffer text;
+  for (uint32_t id : cell.triangles) fmt::format_to(std::back_inserter(text), "{}\n", id);
+  return fmt::to_string(text);
+}
+
+std::string cellJson(const PvsFile& pvs, const CellPvs& cell, const Scene* scene) {
+  Json json = {{"scene", pvs.scene_name},
+               {"scene_hash", hashText(pvs.scene_hash)},
+               {"scene_triangles", pvs.triangle_count},
+               {"cell", cellToJson(cell.cell)}};
+  json["statistics"] = Json::object();
+  addCellStatistics(json["statistics"], summarize(cell), pvs.triangle_count);
+  if (scene) json["objects"] = objectsJson(*scene, cell);
+  json["ids"] = cell.triangles;
+  return jsonText(json, -1);
+}
+
+Scene visibleScene(const Scene& scene, const CellPvs& cell) {
+  if (cell.triangles.empty()) {
+    throw Error(fmt::format("cell {} sees no triangle: there is nothing to export", cell.cell.name));
+  }
+  Scene visible;
+  std::vector<uint32_t> new_index(scene.positions.size(), kNoTriangle);
+  size_t id = 0;
+  for (const SceneObject& object : scene.objects) copyObject(scene, object, cell, id, new_index, visible);
+  return visible;
+}
+
+}  // namespace sightline

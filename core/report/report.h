@@ -1,0 +1,61 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bvh/bvh.h"
+#include "core/device/device.h"
+#include "core/pvs/cell_summary.h"
+#include "core/scene/scene.h"
+
+namespace sightline {
+
+/// Facts about the scene's tree.
+struct TreeSummary {
+  double build_seconds = 0;
+  double sah_cost = 0;
+  uint32_t depth = 0;
+  uint64_t nodes2 = 0, nodes8 = 0;
+  uint64_t references = 0;
+  uint64_t bytes = 0;  ///< nodes of both layouts and references
+};
+TreeSummary summarize(const Bvh& bvh);
+
+/// Facts about the scene.
+struct SceneSummary {
+  std::string name;
+  uint64_t hash = 0;
+  uint64_t triangles = 0, vertices = 0, objects = 0;
+  uint64_t degenerate = 0, repaired = 0, alpha = 0, single_sided = 0;
+};
+SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t hash);
+
+/// Everything that the JSON report of a bake says.
+struct BakeReport {
+  std::string version;  ///< of the program
+  SceneSummary scene;
+  std::string baked_on;              ///< device on which the bake began
+  std::optional<DeviceInfo> device;  ///< none: the file was complete, no device was opened
+  std::optional<TreeSummary> tree;   ///< as device
+  std::string set = "auto";          ///< --set as asked
+  bool spatial_splits = false, witnesses = false, repair = false;
+  BakeParams params;
+  std::vector<CellSummary> cells;  ///< finished, in order
+  uint64_t planned_cells = 0;
+  uint64_t resumed_cells = 0;       ///< of `cells`: baked by an earlier run
+  double seconds = 0;               ///< of this run: loading, tree, cells
+  uint64_t peak_process_bytes = 0;  ///< most memory that this process held
+};
+
+/// The JSON text, keys as docs/report.md says.
+std::string reportJson(const BakeReport& report);
+
+/// One line if the scene has triangles that are traced as something simpler than the file says (alpha as
+/// opaque, single-sided as two-sided); empty if it has none.
+std::string materialWarning(const SceneSummary& scene);
+
+/// Most memory that this process has held, in bytes (VmHWM).
+uint64_t peakProcessBytes();
+
+}  // namespace sightline

@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "core/pvs/cell_summary.h"
+
+// Numbers and tables for people.
+namespace sightline {
+
+/// 950, 12.3k, 4.56M, 7.89G: three digits.
+std::string shortCount(uint64_t count);
+/// 0.4 s, 12 s, 3 min 05 s, 2 h 07 min. Unknown (negative or not finite): "?".
+std::string shortDuration(double seconds);
+/// "random", "border", "reverse" or "contained".
+std::string stageName(uint32_t stage);
+
+/// 16 hexadecimal digits.
+std::string hashText(uint64_t hash);
+
+/// A line a cell: triangles, share of the scene, rays, Mrays/s, iterations, missing-ray share with the upper
+/// end of its 95 % interval, seconds. Ends with a newline.
+std::string cellTable(std::span<const CellSummary> cells, uint32_t triangle_count);
+
+}  // namespace sightline
