@@ -196,7 +196,8 @@ bool Builder::split(const Range& range, Range& left, Range& right) {
   if (n <= config_.max_leaf_size) {
     const float area = measure_.halfArea(range.box);
     if (object.axis < 0 && spatial.axis < 0) return false;
-    if (area * leafCost(n) <= area * kNodeCost + (spatial.axis < 0 ? object.cost : spatial.cost)) return false;
+    if (area * leafCost(n) <= area * kNodeCost + (spatial.axis < 0 ? object.cost : spatial.cost))
+      return false;
   }
   if (spatial.axis >= 0 && cutSpatial(range, spatial, left, right)) return true;
   cutObject(range, object, mapping, left_of_chunk, left, right);

@@ -7,7 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace sightline {
@@ -17,6 +17,8 @@ namespace {
 /// Share of a coordinate by which a computed point may be off; its box grows by so much. An interpolation
 /// has about five roundings of 2^-24 each.
 constexpr float kClipError = 0x1p-21f;
+/// The same where products round to multiples of the least positive float.
+constexpr float kLeastPad = 4 * std::numeric_limits<float>::denorm_min();
 constexpr float kNoExtent = 1e-30f;
 
 Float4 point4(glm::vec3 p) {
@@ -38,7 +40,7 @@ struct Corners {
       most = glm::max(most, glm::abs(v));
       p[i] = point4(v);
     }
-    for (int i = 0; i < 3; ++i) pad[i] = most[i] * kClipError;
+    for (int i = 0; i < 3; ++i) pad[i] = most[i] * kClipError + kLeastPad;
     pad[3] = 0;
   }
   void turnTo(int axis) {

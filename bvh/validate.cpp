@@ -59,7 +59,7 @@ double halfArea(const Bounds3& b) {
   return d.x * d.y + d.y * d.z + d.z * d.x;
 }
 
-/// Walks nodes from 0, each once; a complaint, or empty. Boxes of inner children must contain what is below.
+/// Walks nodes from 0, each once. Boxes of inner children must contain what is below.
 template <typename Node>
 class Walker {
  public:
@@ -68,19 +68,18 @@ class Walker {
     walk_.leaf_at.resize(references);
   }
 
+  /// A complaint, or empty.
   std::string run() {
     if (nodes_.empty()) return std::string(name_) + ": no root";
-    push(0, {}, true);
+    push({0, 1, {}});
     while (!stack_.empty() && error_.empty()) {
       const Entry e = stack_.back();
       stack_.pop_back();
       visit(e);
     }
-    if (!error_.empty()) return error_;
-    for (size_t i = 0; i < reached_.size(); ++i) {
-      if (!reached_[i]) return place(i) + "is unreachable";
-    }
-    return "";
+    const auto lost = std::find(reached_.begin(), reached_.end(), false);
+    if (lost != reached_.end()) fail(static_cast<uint32_t>(lost - reached_.begin()), -1, "is unreachable");
+    return error_;
   }
   const Walk& result() const { return walk_; }
 
@@ -88,62 +87,65 @@ class Walker {
   struct Entry {
     uint32_t node, depth;
     Bounds3 box;
-    bool root;
   };
 
-  std::string place(size_t node) const { return std::string(name_) + " node " + std::to_string(node) + " "; }
+  /// Keeps the first complaint.
+  void fail(uint32_t node, int child, const char* what) {
+    if (!error_.empty()) return;
+    error_ = std::string(name_) + " node " + std::to_string(node) + " ";
+    if (child >= 0) error_ += "child " + std::to_string(child) + " ";
+    error_ += what;
+  }
 
-  void push(uint32_t node, const Bounds3& box, bool root, uint32_t depth = 1) {
-    reached_[node] = true;
-    stack_.push_back({node, depth, box, root});
+  void push(const Entry& e) {
+    reached_[e.node] = true;
+    stack_.push_back(e);
   }
 
   void visit(const Entry& e) {
     const Node& node = nodes_[e.node];
     Bounds3 all{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
     walk_.depth = std::max(walk_.depth, e.depth);
-    for (int i = 0; i < kWidth<Node> && error_.empty(); ++i) {
+    for (int i = 0; i < kWidth<Node>; ++i) {
       const Bounds3 box = boxOf(node, i);
-      const std::string child = place(e.node) + "child " + std::to_string(i) + " ";
       if (node.child[i] == kNone) {
-        if (node.count[i] != 0 || !isEmpty(box)) error_ = child + "is empty but has a count or a box";
+        if (node.count[i] != 0 || !isEmpty(box)) fail(e.node, i, "is empty but has a count or a box");
         continue;
       }
-      if (!isOrdered(box)) error_ = child + "has a box with low > high or NaN";
+      if (!isOrdered(box)) fail(e.node, i, "has a box with low > high or NaN");
       all = unite(all, box);
       if (node.count[i] == 0) {
-        visitInner(child, node.child[i], box, e.depth);
+        visitInner(e, i, node.child[i], box);
       } else {
-        visitLeaf(child, node.child[i], node.count[i], box);
+        visitLeaf(e, i, node.child[i], node.count[i], box);
       }
     }
-    if (!error_.empty()) return;
-    if (!isOrdered(all)) error_ = place(e.node) + "has no child";
-    if (e.root) {
+    if (!isOrdered(all)) fail(e.node, -1, "has no child");
+    if (e.node == 0) {
       walk_.root = all;
     } else if (!contains(e.box, all)) {
-      error_ = place(e.node) + "is not contained in the box that its parent has for it";
+      fail(e.node, -1, "is not contained in the box that its parent has for it");
     }
-    walk_.cost += halfArea(e.root ? all : e.box);
+    walk_.cost += halfArea(e.node == 0 ? all : e.box);
   }
 
-  void visitInner(const std::string& child, uint32_t index, const Bounds3& box, uint32_t depth) {
+  void visitInner(const Entry& parent, int i, uint32_t index, const Bounds3& box) {
     if (index >= nodes_.size()) {
-      error_ = child + "points past the last node";
+      fail(parent.node, i, "points past the last node");
     } else if (reached_[index]) {
-      error_ = child + "points to a node that is reached twice";
+      fail(parent.node, i, "points to a node that is reached twice");
     } else {
-      push(index, box, false, depth + 1);
+      push({index, parent.depth + 1, box});
     }
   }
 
-  void visitLeaf(const std::string& child, uint32_t first, uint32_t count, const Bounds3& box) {
+  void visitLeaf(const Entry& parent, int i, uint32_t first, uint32_t count, const Bounds3& box) {
     const size_t total = walk_.leaf_at.size();
-    if (count > 8) error_ = child + "is a leaf of more than 8 references";
+    if (count > 8) fail(parent.node, i, "is a leaf of more than 8 references");
     if (first >= total || count > total - first) {
-      error_ = child + "points past the last reference";
+      fail(parent.node, i, "points past the last reference");
     } else if (walk_.leaf_at[first].count) {
-      error_ = child + "shares its references with another leaf";
+      fail(parent.node, i, "shares its references with another leaf");
     } else {
       walk_.leaf_at[first] = {box, count};
       walk_.cost += halfArea(box) * count;
