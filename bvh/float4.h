@@ -43,6 +43,15 @@ inline Float4 max4(Float4 a, Float4 b) {
 inline Float4 clearFourth(Float4 a) {
   return {_mm_and_ps(a.v, _mm_castsi128_ps(_mm_set_epi32(0, -1, -1, -1)))};
 }
+/// Whether a <= b in the first three lanes.
+inline bool lessEqual3(Float4 a, Float4 b) {
+  return (_mm_movemask_ps(_mm_cmple_ps(a.v, b.v)) & 7) == 7;
+}
+/// Replaces lane i by s.
+inline void setLane(Float4& a, int i, float s) {
+  const __m128 mask = _mm_castsi128_ps(_mm_cmpeq_epi32(_mm_set_epi32(3, 2, 1, 0), _mm_set1_epi32(i)));
+  a.v = _mm_or_ps(_mm_and_ps(mask, _mm_set1_ps(s)), _mm_andnot_ps(mask, a.v));
+}
 /// Rounds towards zero; the values must fit in 31 bits.
 inline Int4 truncate4(Float4 a) {
   Int4 r;

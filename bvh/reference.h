@@ -19,12 +19,7 @@ struct Box {
     high = max4(high, h);
   }
   void grow(const Box& b) { grow(b.low, b.high); }
-  bool isEmpty() const {
-    alignas(16) float l[4], h[4];
-    store4(l, low);
-    store4(h, high);
-    return !(l[0] <= h[0] && l[1] <= h[1] && l[2] <= h[2]);
-  }
+  bool isEmpty() const { return !lessEqual3(low, high); }
 };
 
 /// 32 bytes: low.x low.y low.z id, high.x high.y high.z 0. No coordinate is -0, so that minimum and

@@ -12,73 +12,8 @@
 
 namespace sightline {
 
-namespace {
-
-/// Share of a coordinate by which a computed point may be off; its box grows by so much. An interpolation
-/// has about five roundings of 2^-24 each.
-constexpr float kClipError = 0x1p-21f;
-/// The same where products round to multiples of the least positive float.
-constexpr float kLeastPad = 4 * std::numeric_limits<float>::denorm_min();
-constexpr float kNoExtent = 1e-30f;
-
-Float4 point4(glm::vec3 p) {
-  const float f[4] = {p.x + 0.0f, p.y + 0.0f, p.z + 0.0f, 0};  // + 0: without negative zero
-  return load4(f);
-}
-
-/// A triangle ready for cutting along one axis.
-struct Corners {
-  Float4 p[3];
-  float along[3];
-  float pad[4];
-
-  Corners(const Triangles& t, uint32_t id) {
-    const glm::uvec3 c = t.ids[id];
-    glm::vec3 most(0);
-    for (int i = 0; i < 3; ++i) {
-      const glm::vec3 v = t.positions[c[i]];
-      most = glm::max(most, glm::abs(v));
-      p[i] = point4(v);
-    }
-    for (int i = 0; i < 3; ++i) pad[i] = most[i] * kClipError + kLeastPad;
-    pad[3] = 0;
-  }
-  void turnTo(int axis) {
-    for (int i = 0; i < 3; ++i) along[i] = lane(p[i], axis);
-  }
-  /// Bounds of the triangle's section with a plane, rounded outwards.
-  Box section(float plane, float scale) const {
-    Box box;
-    for (int i = 0; i < 3; ++i) {
-      const int j = i == 2 ? 0 : i + 1;
-      const float a = along[i], b = along[j];
-      if (!((a < plane && b > plane) || (a > plane && b < plane))) continue;
-      const float t = (plane * scale - a * scale) / (b * scale - a * scale);
-      const Float4 q = p[i] * splat4(1 - t) + p[j] * splat4(t);
-      box.grow(q - load4(pad), q + load4(pad));
-    }
-    return box;
-  }
-};
-
-/// A slab's part of a reference: what is known of the triangle there, within the reference and the slab.
-Box within(Box part, const Reference& r, int axis, float slab_low, float slab_high) {
-  alignas(16) float l[4], h[4];
-  store4(l, max4(part.low, r.lowLanes()));
-  store4(h, min4(part.high, r.highLanes()));
-  l[axis] = std::max(r.low[axis], slab_low);
-  h[axis] = std::min(r.high[axis], slab_high);
-  return {load4(l) + splat4(0), load4(h) + splat4(0)};
-}
-
-float firstLane(Float4 a) {
-  return lane(a, 0);
-}
-
-}  // namespace
-
 SpatialMapping::SpatialMapping(const Box& box, const Measure& measure) : measure_(measure) {
-  const float scale = firstLane(measure.scale);
+  const float scale = lane(measure.scale, 0);
   for (int a = 0; a < 3; ++a) {
     const float low = lane(box.low, a), high = lane(box.high, a);
     for (uint32_t i = 0; i <= kSpatialBins; ++i) {
@@ -93,7 +28,7 @@ SpatialMapping::SpatialMapping(const Box& box, const Measure& measure) : measure
 }
 
 void SpatialMapping::slabs(const Reference& r, int axis, uint32_t& first, uint32_t& last) const {
-  const float scale = firstLane(measure_.scale);
+  const float scale = lane(measure_.scale, 0);
   const auto guess = [&](float x) {
     const float b = (x * scale - start[axis]) * factor[axis];
     return static_cast<uint32_t>(std::clamp(b, 0.0f, static_cast<float>(kSpatialBins - 1)));
@@ -109,7 +44,6 @@ void SpatialMapping::slabs(const Reference& r, int axis, uint32_t& first, uint32
 
 void SpatialBins::add(const Reference* references, uint32_t count, const SpatialMapping& mapping,
                       const Triangles& triangles) {
-  const float scale = firstLane(triangles.measure.scale);
   for (const Reference* r = references; r != references + count; ++r) {
     uint32_t first[3], last[3];
     bool crosses = false;
@@ -122,24 +56,24 @@ void SpatialBins::add(const Reference* references, uint32_t count, const Spatial
       if (first[a] == last[a]) box[a][first[a]].grow(r->lowLanes(), r->highLanes());
     }
     if (!crosses) continue;
-    Corners corners(triangles, r->id);
+    Clipper clipper(triangles, r->id);
     for (int a = 0; a < 3; ++a) {
-      if (mapping.factor[a] == 0 || first[a] == last[a]) continue;
-      corners.turnTo(a);
-      const float* p = mapping.plane[a];
-      Box before = corners.section(p[first[a]], scale);
-      for (uint32_t b = first[a]; b <= last[a]; ++b) {
-        const Box after = corners.section(p[b + 1], scale);
-        Box part = before;
-        part.grow(after);
-        for (int i = 0; i < 3; ++i) {
-          if (corners.along[i] >= p[b] && corners.along[i] <= p[b + 1]) part.grow(corners.p[i], corners.p[i]);
-        }
-        part = within(part, *r, a, p[b], p[b + 1]);
-        if (!part.isEmpty()) box[a][b].grow(part);
-        before = after;
-      }
+      if (mapping.factor[a] != 0 && first[a] != last[a]) addParts(*r, a, first[a], last[a], mapping, clipper);
     }
+  }
+}
+
+void SpatialBins::addParts(const Reference& r, int axis, uint32_t first, uint32_t last,
+                           const SpatialMapping& mapping, Clipper& clipper) {
+  clipper.turnTo(axis);
+  const float* plane = mapping.plane[axis];
+  Box before = clipper.section(plane[first]);
+  for (uint32_t b = first; b <= last; ++b) {
+    const Box after = clipper.section(plane[b + 1]);
+    before.grow(after);
+    const Box part = clipper.part(before, r, plane[b], plane[b + 1]);
+    if (!part.isEmpty()) box[axis][b].grow(part);
+    before = after;
   }
 }
 
@@ -191,16 +125,11 @@ Side sideOf(const Reference& r, const SpatialSplit& split, const Triangles& tria
   if (r.low[a] >= split.plane) return Side::kRight;
   if (r.high[a] <= split.plane) return Side::kLeft;
   const Measure& m = triangles.measure;
-  Corners corners(triangles, r.id);
-  corners.turnTo(a);
-  const Box section = corners.section(split.plane, firstLane(m.scale));
-  Box part[2] = {section, section};
-  for (int i = 0; i < 3; ++i) {
-    if (corners.along[i] <= split.plane) part[0].grow(corners.p[i], corners.p[i]);
-    if (corners.along[i] >= split.plane) part[1].grow(corners.p[i], corners.p[i]);
-  }
-  part[0] = within(part[0], r, a, r.low[a], split.plane);
-  part[1] = within(part[1], r, a, split.plane, r.high[a]);
+  Clipper clipper(triangles, r.id);
+  clipper.turnTo(a);
+  const Box section = clipper.section(split.plane);
+  const Box part[2] = {clipper.part(section, r, -std::numeric_limits<float>::infinity(), split.plane),
+                       clipper.part(section, r, split.plane, std::numeric_limits<float>::infinity())};
   if (part[0].isEmpty()) return Side::kRight;
   if (part[1].isEmpty()) return Side::kLeft;
 

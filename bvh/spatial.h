@@ -2,23 +2,15 @@
 // Spatial splits: cutting a node at a plane, where triangles that cross it go to both sides, each side with
 // the box of its part.
 #include <cstdint>
-#include <glm/glm.hpp>
-#include <span>
 #include <vector>
 
+#include "bvh/clip.h"
 #include "bvh/partition.h"
 #include "bvh/reference.h"
 
 namespace sightline {
 
 inline constexpr uint32_t kSpatialBins = 16;
-
-/// What clipping needs to know of the scene.
-struct Triangles {
-  std::span<const glm::vec3> positions;
-  std::span<const glm::uvec3> ids;
-  Measure measure;
-};
 
 /// The planes at which a node may be cut: the borders of kSpatialBins slabs of equal width an axis.
 struct SpatialMapping {
@@ -42,6 +34,10 @@ struct SpatialBins {
   void add(const Reference* references, uint32_t count, const SpatialMapping& mapping,
            const Triangles& triangles);
   void merge(const SpatialBins& other);
+
+ private:
+  void addParts(const Reference& r, int axis, uint32_t first, uint32_t last, const SpatialMapping& mapping,
+                Clipper& clipper);
 };
 
 /// A cut at a plane; `axis` < 0: none is possible.
