@@ -167,19 +167,28 @@ bool Builder::worthSpatial(const Range& range, const ObjectSplit& object) const 
 
 SpatialSplit Builder::findSpatial(const Range& range) {
   const uint32_t n = range.size();
-  const SpatialMapping mapping(range.box, measure_);
+  SpatialMapping mapping(range.box, measure_);
   const uint32_t chunks = (n + kChunk - 1) / kChunk;
-  if (chunks == 1) {
-    SpatialBins bins;
-    bins.add(at(range), n, mapping, scene_);
-    return findSpatialSplit(bins, mapping, n, range.extra, measure_);
-  }
-  std::vector<SpatialBins> bins(chunks);
-  tbb::parallel_for(0u, chunks, [&](uint32_t c) {
-    bins[c].add(at(range) + c * kChunk, std::min(kChunk, n - c * kChunk), mapping, scene_);
+  std::vector<SpatialBins> many(chunks > 1 ? chunks : 0);
+  SpatialBins all;
+  const auto addChunks = [&](auto&& add) {
+    if (chunks == 1) {
+      add(all, at(range), n);
+      return;
+    }
+    tbb::parallel_for(0u, chunks, [&](uint32_t c) {
+      many[c] = {};
+      add(many[c], at(range) + c * kChunk, std::min(kChunk, n - c * kChunk));
+    });
+    for (const SpatialBins& bins : many) all.merge(bins);
+  };
+  addChunks(
+      [&](SpatialBins& bins, const Reference* r, uint32_t count) { bins.addCounts(r, count, mapping); });
+  if (!mapping.keepAffordable(all, n, range.extra)) return {};
+  addChunks([&](SpatialBins& bins, const Reference* r, uint32_t count) {
+    bins.addBoxes(r, count, mapping, scene_);
   });
-  for (uint32_t c = 1; c < chunks; ++c) bins[0].merge(bins[c]);
-  return findSpatialSplit(bins[0], mapping, n, range.extra, measure_);
+  return findSpatialSplit(all, mapping, n, range.extra, measure_);
 }
 
 /// False: the range is a leaf.

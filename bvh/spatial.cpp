@@ -42,23 +42,48 @@ void SpatialMapping::slabs(const Reference& r, int axis, uint32_t& first, uint32
   while (last > first && p[last] >= r.high[axis]) --last;
 }
 
-void SpatialBins::add(const Reference* references, uint32_t count, const SpatialMapping& mapping,
-                      const Triangles& triangles) {
+bool SpatialMapping::keepAffordable(const SpatialBins& bins, uint32_t count, uint32_t extra) {
+  bool any = false;
+  for (int a = 0; a < 3; ++a) {
+    uint32_t left = 0, ended = 0;
+    bool affordable = false;
+    for (uint32_t b = 1; b < kSpatialBins; ++b) {
+      left += bins.begins[a][b - 1];
+      ended += bins.ends[a][b - 1];
+      const uint32_t doubled = left - ended;
+      affordable = affordable || (left > 0 && ended < count && doubled <= extra);
+    }
+    if (!affordable) factor[a] = 0;
+    any = any || factor[a] != 0;
+  }
+  return any;
+}
+
+void SpatialBins::addCounts(const Reference* references, uint32_t count, const SpatialMapping& mapping) {
+  for (int a = 0; a < 3; ++a) {
+    if (mapping.factor[a] == 0) continue;
+    for (const Reference* r = references; r != references + count; ++r) {
+      uint32_t first, last;
+      mapping.slabs(*r, a, first, last);
+      ++begins[a][first];
+      ++ends[a][last];
+    }
+  }
+}
+
+void SpatialBins::addBoxes(const Reference* references, uint32_t count, const SpatialMapping& mapping,
+                           const Triangles& triangles) {
   for (const Reference* r = references; r != references + count; ++r) {
-    uint32_t first[3], last[3];
-    bool crosses = false;
+    uint32_t first[3] = {}, last[3] = {};
     for (int a = 0; a < 3; ++a) {
       if (mapping.factor[a] == 0) continue;
       mapping.slabs(*r, a, first[a], last[a]);
-      ++begins[a][first[a]];
-      ++ends[a][last[a]];
-      crosses = crosses || first[a] != last[a];
       if (first[a] == last[a]) box[a][first[a]].grow(r->lowLanes(), r->highLanes());
     }
-    if (!crosses) continue;
+    if (first[0] == last[0] && first[1] == last[1] && first[2] == last[2]) continue;
     Clipper clipper(triangles, r->id);
     for (int a = 0; a < 3; ++a) {
-      if (mapping.factor[a] != 0 && first[a] != last[a]) addParts(*r, a, first[a], last[a], mapping, clipper);
+      if (first[a] != last[a]) addParts(*r, a, first[a], last[a], mapping, clipper);
     }
   }
 }

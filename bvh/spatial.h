@@ -12,27 +12,33 @@ namespace sightline {
 
 inline constexpr uint32_t kSpatialBins = 16;
 
+struct SpatialBins;
+
 /// The planes at which a node may be cut: the borders of kSpatialBins slabs of equal width an axis.
 struct SpatialMapping {
   float plane[3][kSpatialBins + 1];
-  float start[3], factor[3];  ///< factor 0: no extent, no split along the axis
+  float start[3], factor[3];  ///< factor 0: no split along the axis
 
   SpatialMapping(const Box& box, const Measure& measure);
   /// Slabs that a reference reaches into, first <= last.
   void slabs(const Reference& r, int axis, uint32_t& first, uint32_t& last) const;
+  /// Gives up the axes whose every plane would make more than `extra` references; false: none is left.
+  bool keepAffordable(const SpatialBins& bins, uint32_t count, uint32_t extra);
 
  private:
   Measure measure_;
 };
 
-/// For each slab the bounds of the parts in it, and how many references begin and end there.
+/// For each slab the bounds of the parts in it, and how many references begin and end there. Counting comes
+/// first, since it is cheap and may show that no plane is affordable.
 struct SpatialBins {
   Box box[3][kSpatialBins];
   uint32_t begins[3][kSpatialBins] = {};
   uint32_t ends[3][kSpatialBins] = {};
 
-  void add(const Reference* references, uint32_t count, const SpatialMapping& mapping,
-           const Triangles& triangles);
+  void addCounts(const Reference* references, uint32_t count, const SpatialMapping& mapping);
+  void addBoxes(const Reference* references, uint32_t count, const SpatialMapping& mapping,
+                const Triangles& triangles);
   void merge(const SpatialBins& other);
 
  private:

@@ -169,8 +169,8 @@ TEST(BvhBuild, NegativeZeroIsZero) {
 
 TEST(BvhBuild, SameBytesForAnyNumberOfThreads) {
   tbb::global_control more(tbb::global_control::max_allowed_parallelism, 7);
-  Soup soup = randomSoup(150000, 8, 0.05f);
-  const Soup slivers = sliverSoup(2000, 9);
+  Soup soup = randomSoup(50000, 8, 0.05f);
+  const Soup slivers = sliverSoup(1000, 9);
   for (size_t i = 0; i < slivers.positions.size(); i += 3) {
     soup.add(slivers.positions[i], slivers.positions[i + 1], slivers.positions[i + 2]);
   }
@@ -180,7 +180,7 @@ TEST(BvhBuild, SameBytesForAnyNumberOfThreads) {
     config.threads = 1;
     const Bvh one = buildBvh(soup.positions, soup.triangles, config);
     EXPECT_EQ(validate(one, soup.positions, soup.triangles), "");
-    for (const int threads : {2, 7, 7}) {
+    for (const int threads : {2, 7}) {
       config.threads = threads;
       expectSame(one, buildBvh(soup.positions, soup.triangles, config),
                  std::to_string(threads) + (spatial ? " threads, spatial" : " threads"));
