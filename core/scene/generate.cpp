@@ -20,6 +20,9 @@ const std::vector<Generator>& generators() {
       {{"canyon", "terrain with overhanging cliffs, bridges and arches of rock, hoodoos, boulders"},
        canyonParts,
        canyonCells},
+      {{"plant", "storeys of pipes with bends, tanks, gratings and steel: heavy occlusion"},
+       plantParts,
+       plantCells},
   };
   return all;
 }

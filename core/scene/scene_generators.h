@@ -15,5 +15,7 @@ std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed);
 std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed);
 std::vector<ScenePart> canyonParts(uint64_t triangles, uint64_t seed);
 std::vector<ViewCell> canyonCells(uint64_t triangles, uint64_t seed);
+std::vector<ScenePart> plantParts(uint64_t triangles, uint64_t seed);
+std::vector<ViewCell> plantCells(uint64_t triangles, uint64_t seed);
 
 }  // namespace sightline

@@ -16,6 +16,8 @@ struct Size {
   uint64_t vertices = 0, triangles = 0;
 };
 
+constexpr Size kNone{~uint64_t(0), ~uint64_t(0)};
+
 Size sizeOf(const ScenePart& part, uint32_t level) {
   MeshBuilder counter(MeshBuilder::Mode::kCount);
   part.make(counter, level);
@@ -67,15 +69,22 @@ Plan planLevels(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_
   GeneratorRandom random(seed, 0x9a27, 0);
   for (size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(uint32_t(i))]);
 
-  for (uint32_t pass = level; pass < highest && total < triangles; ++pass) {
+  // What each part would have one level higher; none where it is as high as it gets.
+  std::vector<Size> next(parts.size());
+  const auto lookAhead = [&](size_t i) {
+    next[i] = plan.levels[i] < parts[i].max_level ? sizeOf(parts[i], plan.levels[i] + 1) : kNone;
+  };
+  tbb::parallel_for(size_t(0), parts.size(), lookAhead);
+  for (bool raised = true; raised;) {
+    raised = false;
     for (const size_t i : order) {
-      if (total == triangles) break;
-      if (plan.levels[i] >= parts[i].max_level) continue;
-      const Size finer = sizeOf(parts[i], plan.levels[i] + 1);
-      if (total - sizes[i].triangles + finer.triangles > triangles) continue;
-      total = total - sizes[i].triangles + finer.triangles;
-      sizes[i] = finer;
+      if (next[i].triangles == kNone.triangles || total - sizes[i].triangles + next[i].triangles > triangles)
+        continue;
+      total = total - sizes[i].triangles + next[i].triangles;
+      sizes[i] = next[i];
       plan.levels[i]++;
+      lookAhead(i);
+      raised = true;
     }
   }
   plan.sizes = std::move(sizes);
