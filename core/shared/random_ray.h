@@ -16,7 +16,7 @@
 #include "core/shared/vector.h"
 SL_NAMESPACE_BEGIN
 
-/// sin(x * pi / 2) for x in [0, 1], error below 2.5e-7: Taylor polynomial of degree 11. The runtimes' own
+/// sin(x * pi / 2) for x in [0, 1], error below 3e-7: Taylor polynomial of degree 11. The runtimes' own
 /// sines differ from each other.
 SL_FUNC float sinQuarter(float x) {
   float x2 = x * x;
