@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -32,7 +33,8 @@ class CpuDevice final : public Device {
       : scene_(scene),
         bvh_(bvh),
         tracer_(scene, bvh),
-        arena_(options.threads > 0 ? options.threads : tbb::task_arena::automatic),
+        workers_(tbb::global_control::max_allowed_parallelism, threadCount(options)),
+        arena_(static_cast<int>(threadCount(options))),
         set_(static_cast<uint32_t>(scene.triangles.size()), wantsHash(options)) {}
 
   DeviceInfo info() const override { return cpuDeviceInfo(); }
@@ -147,6 +149,10 @@ class CpuDevice final : public Device {
            bvh_.nodes8.size() * sizeof(BvhNode8);
   }
 
+  static size_t threadCount(const DeviceOptions& options) {
+    return static_cast<size_t>(options.threads > 0 ? options.threads : tbb::info::default_concurrency());
+  }
+
   bool wantsHash(const DeviceOptions& options) const {
     if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
     return options.memory_budget_bytes > 0 &&
@@ -245,6 +251,7 @@ class CpuDevice final : public Device {
   const Scene& scene_;
   const Bvh& bvh_;
   CpuTracer tracer_;
+  tbb::global_control workers_;  ///< lets the arena have more threads than cores
   tbb::task_arena arena_;
   HostSet set_;
   std::vector<Face> faces_;
