@@ -22,7 +22,7 @@ static inline float8 most(float8 a, float8 b) { return a > b ? a : b; }
 
 /// Box distances may be contracted: they are conservative either way.
 static inline float8 slab(float plane, float8 inverse, float8 addend) {
-#ifdef FP_FAST_FMAF
+#if defined(FP_FAST_FMAF) || defined(__FMA__)
   return fma((float8)plane, inverse, addend);
 #else
   return plane * inverse + addend;
@@ -103,12 +103,14 @@ static inline void intersectRecord8(__global const TriangleRecord* record, Packe
 /// Visits the tree with all lanes; lanes with t < 0 take no part.
 static void tracePacket(SceneRef scene, Packet* p) {
   float8 stack_near[SL_STACK_SIZE];
-  uint2 stack_child[SL_STACK_SIZE];  // x: child, y: count
+  uint stack_child[SL_STACK_SIZE];
+  uint stack_count[SL_STACK_SIZE];
   uint size = 0;
-  uint2 current = (uint2)(0, 0);
+  uint child = 0;
+  uint count = 0;
   for (;;) {
-    while (current.y == 0) {
-      __global const float* node = (__global const float*)&scene.nodes[current.x];
+    while (count == 0) {
+      __global const float* node = (__global const float*)&scene.nodes[child];
       __global const uint* links = (__global const uint*)(node + 12);
       float8 near0 = most(most(slab(node[p->back_x], p->inverse_x, p->near_x),
                                slab(node[4 + p->back_y], p->inverse_y, p->near_y)),
@@ -130,27 +132,34 @@ static void tracePacket(SceneRef scene, Packet* p) {
         uint sooner1 = laneBits(near1 < near0) & both;
         bool swap = 2 * popcount(sooner1) > popcount(both);
         stack_near[size] = swap ? near0 : near1;
-        stack_child[size] = swap ? (uint2)(links[0], links[2]) : (uint2)(links[1], links[3]);
+        uint first = swap ? 1 : 0;
+        stack_child[size] = links[1 - first];
+        stack_count[size] = links[3 - first];
         ++size;
-        current = swap ? (uint2)(links[1], links[3]) : (uint2)(links[0], links[2]);
+        child = links[first];
+        count = links[2 + first];
       } else if (meets0 != 0) {
-        current = (uint2)(links[0], links[2]);
+        child = links[0];
+        count = links[2];
       } else if (meets1 != 0) {
-        current = (uint2)(links[1], links[3]);
+        child = links[1];
+        count = links[3];
       } else {
         do {
           if (size == 0) return;
           --size;
         } while (laneBits(stack_near[size] <= p->t) == 0);
-        current = stack_child[size];
+        child = stack_child[size];
+        count = stack_count[size];
       }
     }
-    for (uint i = current.x; i < current.x + current.y; ++i) intersectRecord8(&scene.triangles[i], p);
+    for (uint i = child; i < child + count; ++i) intersectRecord8(&scene.triangles[i], p);
     do {
       if (size == 0) return;
       --size;
     } while (laneBits(stack_near[size] <= p->t) == 0);
-    current = stack_child[size];
+    child = stack_child[size];
+    count = stack_count[size];
   }
 }
 

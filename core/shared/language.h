@@ -33,7 +33,8 @@ typedef ulong uint64;
 #define SL_CONST __constant
 #define floatBitsToUint as_uint
 #define uintBitsToFloat as_float
-#define slMulHigh(a, b) mul_hi((uint)(a), (uint)(b))
+// Not mul_hi: PoCL makes four multiplications of it.
+#define slMulHigh(a, b) ((uint)(((ulong)(uint)(a) * (ulong)(uint)(b)) >> 32))
 #define SL_SET_PARAM SetRef sl_set
 #define SL_SET sl_set
 #define SL_SET_CAPACITY sl_set.capacity
