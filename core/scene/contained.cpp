@@ -1,6 +1,3 @@
-// Based on: T. Akenine-Moller, Fast 3D Triangle-Box Overlap Testing, 2001: the separating axis theorem over
-// the box's three normals, the triangle's normal and the nine cross products of edges; here in double, in the
-// cell's frame, and with touching counted as overlap.
 #include "core/scene/contained.h"
 
 #include <tbb/parallel_for.h>
@@ -8,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/scene/box_triangle.h"
 #include "core/scene/cell_frame.h"
 #include "core/scene/triangle_area.h"
 
@@ -16,34 +14,6 @@ namespace {
 
 /// Triangles of one task; the result does not depend on it.
 constexpr size_t kBlock = 1 << 15;
-
-using LocalTriangle = glm::dvec3[3];
-
-/// Whether the projections of box and triangle on the axis have no point in common. A zero axis (parallel
-/// edges) separates nothing.
-bool separates(const glm::dvec3& axis, const LocalTriangle& corners, const glm::dvec3& half_size) {
-  const double a = glm::dot(axis, corners[0]);
-  const double b = glm::dot(axis, corners[1]);
-  const double c = glm::dot(axis, corners[2]);
-  const double radius = glm::dot(glm::abs(axis), half_size);
-  return std::min({a, b, c}) > radius || std::max({a, b, c}) < -radius;
-}
-
-bool meetsBox(const LocalTriangle& corners, const glm::dvec3& half_size) {
-  const glm::dvec3 low = glm::min(corners[0], glm::min(corners[1], corners[2]));
-  const glm::dvec3 high = glm::max(corners[0], glm::max(corners[1], corners[2]));
-  for (int i = 0; i < 3; ++i) {
-    if (low[i] > half_size[i] || high[i] < -half_size[i]) return false;
-  }
-  const glm::dvec3 edges[3] = {corners[1] - corners[0], corners[2] - corners[1], corners[0] - corners[2]};
-  if (separates(glm::cross(edges[0], edges[1]), corners, half_size)) return false;
-  for (const glm::dvec3& edge : edges) {
-    if (separates({0.0, -edge.z, edge.y}, corners, half_size)) return false;
-    if (separates({edge.z, 0.0, -edge.x}, corners, half_size)) return false;
-    if (separates({-edge.y, edge.x, 0.0}, corners, half_size)) return false;
-  }
-  return true;
-}
 
 /// How far, along each local axis, the corners of the faces in float lie from those of the exact box.
 glm::dvec3 roundingOfFaces(const ViewCell& cell, const CellFrame& frame) {
@@ -71,10 +41,10 @@ std::vector<uint32_t> containedTriangles(const Scene& scene, const ViewCell& cel
   tbb::parallel_for(size_t(0), blocks.size(), [&](size_t block) {
     for (size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
       const glm::uvec3& t = scene.triangles[i];
-      const LocalTriangle corners = {frame.toLocal(glm::dvec3(scene.positions[t.x])),
+      const glm::dvec3 corners[3] = {frame.toLocal(glm::dvec3(scene.positions[t.x])),
                                      frame.toLocal(glm::dvec3(scene.positions[t.y])),
                                      frame.toLocal(glm::dvec3(scene.positions[t.z]))};
-      if (!meetsBox(corners, half_size)) continue;
+      if (!triangleMeetsBox(corners, half_size)) continue;
       if (std::max({corners[0].z, corners[1].z, corners[2].z}) <= front) continue;
       if (hasZeroArea(scene.positions[t.x], scene.positions[t.y], scene.positions[t.z])) continue;
       blocks[block].push_back(uint32_t(i));
