@@ -1,0 +1,112 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+
+#include "bvh/bvh.h"
+#include "core/cli/commands.h"
+#include "core/device/device.h"
+#include "core/pvs/choose_cell.h"
+#include "core/pvs/pvs.h"
+#include "core/report/picture.h"
+#include "core/scene/scene.h"
+
+namespace sightline {
+namespace {
+
+constexpr size_t kMissingShown = 10;  ///< ids of missing triangles on one line
+
+struct PictureCommand {
+  std::filesystem::path scene, pvs, output;
+  std::string cell, view = "outside", device = "opencl", cut = "auto";
+  PictureOptions options;
+  bool repair = false;
+};
+
+std::string missingList(const Picture& picture) {
+  std::string ids;
+  for (size_t i = 0; i < std::min(kMissingShown, picture.missing_triangles.size()); ++i) {
+    ids += fmt::format("{} {}", i == 0 ? "" : ",", picture.missing_triangles[i]);
+  }
+  return ids + (picture.missing_triangles.size() > kMissingShown ? ", ..." : "");
+}
+
+void draw(const PictureCommand& command) {
+  const PvsFile pvs = loadPvs(command.pvs);
+  const CellPvs& cell = chooseCell(pvs, command.cell, command.pvs);
+  const Scene scene = loadScene(command.scene, {.repair = command.repair});
+  requireScene(pvs, scene, command.pvs);
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const std::unique_ptr<Device> device = makeDevice(command.device, scene, bvh);
+  const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
+    device->traceRays(rays, hits);
+  };
+
+  const bool inside = command.view == "inside";
+  const Picture picture = inside ? renderInside(trace, scene, cell, command.options)
+                                 : renderOutside(trace, scene, cell, command.options);
+  savePng(picture.image, command.output);
+  fmt::print("{}: {} from {}, {} of {} triangles\n", command.output.string(), cell.cell.name, command.view,
+             cell.triangles.size(), scene.triangles.size());
+  if (!inside) return;
+  fmt::print("{} of {} pixels show a triangle outside the set (red)\n", picture.missing_pixels,
+             picture.scene_pixels);
+  if (!picture.missing_triangles.empty()) {
+    fmt::print("{} triangles outside the set:{}\n", picture.missing_triangles.size(), missingList(picture));
+  }
+}
+
+void setCut(PictureOptions& options, const std::string& cut) {
+  if (cut == "auto" || cut == "none") {
+    options.cut = cut == "auto" ? CutMode::kAuto : CutMode::kNone;
+    return;
+  }
+  options.cut = CutMode::kHeight;
+  if (!CLI::detail::lexical_cast(cut, options.cut_height) || !std::isfinite(options.cut_height)) {
+    throw CLI::ValidationError("--cut", "must be auto, none or a height, not " + cut);
+  }
+}
+
+}  // namespace
+
+void addPictureCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("picture", "Draw a set: visible triangles green, missing ones red");
+  const auto options = std::make_shared<PictureCommand>();
+  command->add_option("scene", options->scene, "the scene that was baked")->required()->type_name("SCENE");
+  command->add_option("pvs", options->pvs, "result of sightline bake")->required()->type_name("OUT.pvs");
+  command->add_option("--cell", options->cell, "view cell by name, or by index from 0")
+      ->required()
+      ->type_name("CELL");
+  command->add_option("-o,--output", options->output, "picture to write")->required()->type_name("FILE.png");
+  command
+      ->add_option("--view", options->view, "outside: the scene around the cell; inside: what the cell sees")
+      ->check(CLI::IsMember({"outside", "inside"}))
+      ->type_name("VIEW")
+      ->capture_default_str();
+  const CLI::Range sides(kMinPictureSide, kMaxPictureSide);
+  command->add_option("--width", options->options.width, "pixels")
+      ->check(sides)
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--height", options->options.height, "pixels")
+      ->check(sides)
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--cut", options->cut,
+                   "outside: leave out what is above this height (auto: a ceiling; none)")
+      ->type_name("Y")
+      ->capture_default_str();
+  command->add_option("--device", options->device, "cpu, opencl, opencl:INDEX or opencl:PART-OF-NAME")
+      ->type_name("NAME")
+      ->capture_default_str();
+  command->add_flag("--repair", options->repair, "load the scene as bake --repair did");
+  command->callback([options] {
+    setCut(options->options, options->cut);
+    draw(*options);
+  });
+}
+
+}  // namespace sightline
