@@ -2,47 +2,37 @@
 #include "cl_kernels/sampling_state.cl"
 
 __kernel void traceRandom(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* faces, StageParams params,
-                          RandomSegment segment, uint slots, volatile __global uint* ray_counters) {
+                          RandomSegment segment, volatile __global uint* ray_counters) {
   const SceneRef scene = SL_SCENE_PACK;
   const SetRef set = SL_SET_PACK;
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   const Face face = faces[segment.range.x];
-  Ray rays[SL_PACKET];
   Hit hits[SL_PACKET];
   uint offsets[SL_PACKET];
+  traceSlots(scene, segment, face, params.shifts, first, offsets, hits);
   uint traced = 0;
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
-    offsets[lane] = first + lane < slots ? slotOffset(segment, first + lane) : kNoTriangle;
-    rays[lane] = noRay();
-    if (offsets[lane] == kNoTriangle) continue;
-    rays[lane] = randomRay(segmentFirst(segment) + offsets[lane], face, params.shifts);
-    ++traced;
-  }
-  traceRays(scene, rays, hits);
-  for (uint lane = 0; lane < SL_PACKET; ++lane) {
     insertHit(set, hits[lane].triangle, segment.batch.x + offsets[lane]);
+    traced += offsets[lane] != kNoTriangle ? 1 : 0;
   }
   countRays(ray_counters, traced);
 }
 
 /// As traceRandom, but only counts the hits outside the set, in the word after the ray counters.
 __kernel void countMissing(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* faces, uint4 shifts,
-                           RandomSegment segment, uint slots, volatile __global uint* ray_counters) {
+                           RandomSegment segment, volatile __global uint* ray_counters) {
   const SceneRef scene = SL_SCENE_PACK;
   const SetRef set = SL_SET_PACK;
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   const Face face = faces[segment.range.x];
-  Ray rays[SL_PACKET];
   Hit hits[SL_PACKET];
+  uint offsets[SL_PACKET];
+  traceSlots(scene, segment, face, shifts, first, offsets, hits);
   uint traced = 0;
-  for (uint lane = 0; lane < SL_PACKET; ++lane) {
-    rays[lane] = first + lane < slots ? slotRay(segment, face, shifts, first + lane) : noRay();
-    traced += hasDirection(rays[lane]) ? 1 : 0;
-  }
-  traceRays(scene, rays, hits);
   uint missing = 0;
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
     const uint triangle = hits[lane].triangle;
+    traced += offsets[lane] != kNoTriangle ? 1 : 0;
     missing += triangle != kNoTriangle && !isInSet(set, triangle) ? 1 : 0;
   }
   if (missing > 0) atomic_add(&ray_counters[SL_COUNTERS], missing);

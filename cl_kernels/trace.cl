@@ -1,7 +1,7 @@
 // Nearest hits of SL_PACKET rays a work item, and the kernels that do nothing else.
+#include "cl_kernels/random_packet.cl"
 #include "cl_kernels/trace_packet.cl"
 #include "cl_kernels/trace_single.cl"
-#include "core/shared/random_ray.h"
 
 #if SL_PACKET == 1
 static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
@@ -28,21 +28,9 @@ __kernel void traceRaysKernel(SL_SCENE_ARGS, __global const Ray* input_rays, __g
 /// Hits of a segment's random rays, each at its offset in the segment: for benchmarks and tests.
 __kernel void traceSegmentKernel(SL_SCENE_ARGS, RandomSegment segment, Face face, uint4 shifts,
                                  __global Hit* output_hits) {
-  uint first = (uint)get_global_id(0) * SL_PACKET;
-  Ray rays[SL_PACKET];
   Hit hits[SL_PACKET];
-  uint slots = segment.batch.y * segment.batch.z;
   uint offsets[SL_PACKET];
-  for (uint i = 0; i < SL_PACKET; ++i) {
-    rays[i].direction = vec4(0.0f, 0.0f, 0.0f, 0.0f);
-    rays[i].origin = rays[i].direction;
-    offsets[i] = kNoTriangle;
-    if (first + i < slots) {
-      offsets[i] = slotOffset(segment, first + i);
-      if (offsets[i] != kNoTriangle) rays[i] = randomRay(segmentFirst(segment) + offsets[i], face, shifts);
-    }
-  }
-  traceRays(SL_SCENE_PACK, rays, hits);
+  traceSlots(SL_SCENE_PACK, segment, face, shifts, (uint)get_global_id(0) * SL_PACKET, offsets, hits);
   for (uint i = 0; i < SL_PACKET; ++i) {
     if (offsets[i] != kNoTriangle) output_hits[offsets[i]] = hits[i];
   }

@@ -1,24 +1,8 @@
 // Eight rays together through the 2-wide tree: the way of CPUs, where a vector register holds a packet.
 // Every number of the triangle test is computed as in core/shared/triangle.h, lane by lane.
-#include "cl_kernels/scene.cl"
+#include "cl_kernels/ray_packet.cl"
 
 #if SL_PACKET == 8
-
-/// Bit i: lane i of the mask is set (all bits of it).
-static inline uint laneBits(int8 mask) {
-#ifdef __AVX__
-  return (uint)__builtin_ia32_movmskps256(as_float8(mask));
-#else
-  int8 bits = mask & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-  int4 sum4 = bits.lo + bits.hi;
-  int2 sum2 = sum4.lo + sum4.hi;
-  return (uint)(sum2.x + sum2.y);
-#endif
-}
-
-/// `min` and `max` of OpenCL take several instructions for their rules on NaN; these take one.
-static inline float8 least(float8 a, float8 b) { return a < b ? a : b; }
-static inline float8 most(float8 a, float8 b) { return a > b ? a : b; }
 
 /// Box distances may be contracted: they are conservative either way.
 static inline float8 slab(float plane, float8 inverse, float8 addend) {
@@ -163,85 +147,103 @@ static void tracePacket(SceneRef scene, Packet* p) {
   }
 }
 
-static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
-  uint classes[8];
-  uint waiting = 0;
-  for (uint i = 0; i < 8; ++i) {
-    float4 d = rays[i].direction;
-    hits[i] = missHit();
-    float x = fabs(d.x);
-    float y = fabs(d.y);
-    float z = fabs(d.z);
-    uint depth = x >= y ? (x >= z ? 0u : 2u) : (y >= z ? 1u : 2u);
-    classes[i] = (d.x < 0.0f ? 1u : 0u) | (d.y < 0.0f ? 2u : 0u) | (d.z < 0.0f ? 4u : 0u) | (depth << 3);
-    waiting |= isInactive(rays[i]) ? 0u : 1u << i;
-  }
+/// Bits of the lanes whose direction's sign or depth axis is that of lane `first`.
+static inline uint lanesLike(uint first, uint bits) { return (bits >> first & 1u) != 0 ? bits : ~bits; }
+
+/// 1 / direction and the addends of boxRay (core/shared/box.h) along one axis.
+static inline float8 inverseSlope(float8 direction, float8 smallest) {
+  float8 bounded = direction < 0.0f ? -smallest : smallest;
+  return 1.0f / (fabs(direction) < smallest ? bounded : direction);
+}
+
+/// The nearest hits of all lanes; t of a miss is not a number to use. Lanes of one class (signs of the direction,
+/// axis of depth) go through the tree together; rays that were put side by side well are of one class.
+static HitPacket traceLanes(SceneRef scene, const RayPacket* rays) {
+  float8 x = fabs(rays->direction[0]);
+  float8 y = fabs(rays->direction[1]);
+  float8 z = fabs(rays->direction[2]);
+  float8 largest = most(x, most(y, z));
+  uint waiting = laneBits(largest > 0.0f);
+  // Lanes without a ray compute with something harmless.
+  float8 smallest = largest > 0.0f ? largest * kSmallestSlope : (float8)1.0f;
+  float8 far_origin = most(fabs(rays->origin[0]), most(fabs(rays->origin[1]), fabs(rays->origin[2])));
+  float8 padding = kBoxPadding * (far_origin + scene.reach);
+  uint back_x = laneBits(rays->direction[0] < 0.0f);
+  uint back_y = laneBits(rays->direction[1] < 0.0f);
+  uint back_z = laneBits(rays->direction[2] < 0.0f);
+  uint deep_x = laneBits((x >= y) & (x >= z));
+  uint deep_y = laneBits(y >= z) & ~deep_x;
+
+  Packet p;
+  p.inverse_x = inverseSlope(rays->direction[0], smallest);
+  p.inverse_y = inverseSlope(rays->direction[1], smallest);
+  p.inverse_z = inverseSlope(rays->direction[2], smallest);
+  float8 middle_x = -rays->origin[0] * p.inverse_x;
+  float8 middle_y = -rays->origin[1] * p.inverse_y;
+  float8 middle_z = -rays->origin[2] * p.inverse_z;
+  p.near_x = middle_x - padding * fabs(p.inverse_x);
+  p.near_y = middle_y - padding * fabs(p.inverse_y);
+  p.near_z = middle_z - padding * fabs(p.inverse_z);
+  p.far_x = middle_x + padding * fabs(p.inverse_x);
+  p.far_y = middle_y + padding * fabs(p.inverse_y);
+  p.far_z = middle_z + padding * fabs(p.inverse_z);
+
+  HitPacket hits;
+  hits.t = (float8)as_float(0x7f800000u);
+  hits.triangle = (uint8)kNoTriangle;
   while (waiting != 0) {
     uint first = 31u - clz(waiting & (0u - waiting));
-    uint chosen = classes[first];
-    Packet p;
-    uint depth = chosen >> 3;
-    p.axis_z = depth;
+    uint taken = waiting & lanesLike(first, back_x) & lanesLike(first, back_y) & lanesLike(first, back_z) &
+                 lanesLike(first, deep_x) & lanesLike(first, deep_y);
+    waiting &= ~taken;
+    p.back_x = back_x >> first & 1u;
+    p.back_y = back_y >> first & 1u;
+    p.back_z = back_z >> first & 1u;
+    uint depth = (deep_x >> first & 1u) != 0 ? 0u : ((deep_y >> first & 1u) != 0 ? 1u : 2u);
     p.axis_x = depth == 2u ? 0u : depth + 1u;
     p.axis_y = depth == 0u ? 2u : depth - 1u;
-    p.back_x = chosen & 1u;
-    p.back_y = (chosen >> 1) & 1u;
-    p.back_z = (chosen >> 2) & 1u;
-    float soa[19][8];
-    uint taken = 0;
-    for (uint i = 0; i < 8; ++i) {
-      bool takes_part = (waiting >> i & 1u) != 0 && classes[i] == chosen;
-      Ray ray = rays[takes_part ? i : first];
-      BoxRay box_ray = boxRay(ray, scene.reach);
-      ShearedRay sheared = shearRay(ray);
-      taken |= takes_part ? 1u << i : 0u;
-      soa[0][i] = box_ray.inverse.x;
-      soa[1][i] = box_ray.inverse.y;
-      soa[2][i] = box_ray.inverse.z;
-      soa[3][i] = box_ray.near_addend.x;
-      soa[4][i] = box_ray.near_addend.y;
-      soa[5][i] = box_ray.near_addend.z;
-      soa[6][i] = box_ray.far_addend.x;
-      soa[7][i] = box_ray.far_addend.y;
-      soa[8][i] = box_ray.far_addend.z;
-      soa[9][i] = sheared.origin.x;
-      soa[10][i] = sheared.origin.y;
-      soa[11][i] = sheared.origin.z;
-      soa[12][i] = sheared.shear.x;
-      soa[13][i] = sheared.shear.y;
-      soa[14][i] = sheared.shear.z;
-      soa[15][i] = takes_part ? as_float(0x7f800000u) : -1.0f;
-    }
-    p.inverse_x = vload8(0, soa[0]);
-    p.inverse_y = vload8(0, soa[1]);
-    p.inverse_z = vload8(0, soa[2]);
-    p.near_x = vload8(0, soa[3]);
-    p.near_y = vload8(0, soa[4]);
-    p.near_z = vload8(0, soa[5]);
-    p.far_x = vload8(0, soa[6]);
-    p.far_y = vload8(0, soa[7]);
-    p.far_z = vload8(0, soa[8]);
-    p.origin_x = vload8(0, soa[9]);
-    p.origin_y = vload8(0, soa[10]);
-    p.origin_z = vload8(0, soa[11]);
-    p.shear_x = vload8(0, soa[12]);
-    p.shear_y = vload8(0, soa[13]);
-    p.shear_z = vload8(0, soa[14]);
-    p.t = vload8(0, soa[15]);
+    p.axis_z = depth;
+    p.origin_x = rays->origin[p.axis_x];
+    p.origin_y = rays->origin[p.axis_y];
+    p.origin_z = rays->origin[p.axis_z];
+    float8 along = rays->direction[p.axis_z];
+    p.shear_x = rays->direction[p.axis_x] / along;
+    p.shear_y = rays->direction[p.axis_y] / along;
+    p.shear_z = 1.0f / along;
+    int8 takes_part = ((int8)(int)taken & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
+    p.t = takes_part ? (float8)as_float(0x7f800000u) : (float8)-1.0f;
     p.triangle = (uint8)kNoTriangle;
     tracePacket(scene, &p);
-    float t[8];
-    uint triangle[8];
-    vstore8(p.t, 0, t);
-    vstore8(p.triangle, 0, triangle);
-    for (uint i = 0; i < 8; ++i) {
-      if ((taken >> i & 1u) != 0) {
-        hits[i].t = t[i];
-        hits[i].triangle = triangle[i];
-      }
-    }
-    waiting &= ~taken;
+    hits.t = takes_part ? p.t : hits.t;
+    hits.triangle = takes_part ? p.triangle : hits.triangle;
   }
+  return hits;
+}
+
+static inline void storeHits(HitPacket packet, Hit* hits) {
+  float t[8];
+  uint triangle[8];
+  vstore8(packet.t, 0, t);
+  vstore8(packet.triangle, 0, triangle);
+  for (uint i = 0; i < 8; ++i) {
+    hits[i].t = t[i];
+    hits[i].triangle = triangle[i];
+  }
+}
+
+static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
+  RayPacket packet;
+#define SL_LANES(field, a)                                                                               \
+  (float8)(rays[0].field.a, rays[1].field.a, rays[2].field.a, rays[3].field.a, rays[4].field.a, rays[5].field.a, \
+           rays[6].field.a, rays[7].field.a)
+  packet.origin[0] = SL_LANES(origin, x);
+  packet.origin[1] = SL_LANES(origin, y);
+  packet.origin[2] = SL_LANES(origin, z);
+  packet.direction[0] = SL_LANES(direction, x);
+  packet.direction[1] = SL_LANES(direction, y);
+  packet.direction[2] = SL_LANES(direction, z);
+#undef SL_LANES
+  storeHits(traceLanes(scene, &packet), hits);
 }
 
 #endif

@@ -70,7 +70,7 @@ class OpenClDevice final : public Device {
   void traceRandom(const RandomSegment& segment) override {
     segments_.push_back(segment);
     const auto slots = static_cast<uint32_t>(slotCount(segment));
-    traceUntilItFits([&] { launch(random_, slots, faces_, params_, segment, slots, counters_); });
+    traceUntilItFits([&] { launch(random_, slots, faces_, params_, segment, counters_); });
   }
 
   uint32_t traceBorder(uint32_t first, uint32_t count) override {
@@ -136,7 +136,7 @@ class OpenClDevice final : public Device {
 
   uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {
     const auto slots = static_cast<uint32_t>(slotCount(segment));
-    launch(missing_, slots, faces_, shifts, segment, slots, counters_);
+    launch(missing_, slots, faces_, shifts, segment, counters_);
     return takeCounters();
   }
 

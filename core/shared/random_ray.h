@@ -71,12 +71,9 @@ SL_FUNC uint power(uint base, uint exponent) {
   return result;
 }
 
-/// Offset in the segment (0 .. count - 1) of the ray that slot s traces, or kNoTriangle for the few slots
-/// that have none (where the number of strata does not divide count).
-SL_FUNC uint slotOffset(RandomSegment segment, uint slot) {
+/// Offset in the segment of the first ray of a stratum; its others follow `strata` apart.
+SL_FUNC uint stratumOffset(RandomSegment segment, uint stratum) {
   uint strata = segment.batch.y;
-  uint stratum = slot / segment.batch.z;
-  uint turn = slot - stratum * segment.batch.z;
   uint size2 = power(2u, segment.digits.x);
   uint size5 = power(5u, segment.digits.z);
   uint size7 = power(7u, segment.digits.w);
@@ -98,10 +95,16 @@ SL_FUNC uint slotOffset(RandomSegment segment, uint slot) {
   residue += slUint64(reverseDigits5(cell5, segment.digits.z)) * segment.coefficients.z;
   residue += slUint64(reverseDigits7(cell7, segment.digits.w)) * segment.coefficients.w;
   uint rest_of_strata = slUint(residue % strata);
+  return rest_of_strata >= segment.batch.w ? rest_of_strata - segment.batch.w
+                                           : rest_of_strata + (strata - segment.batch.w);
+}
 
-  uint offset = rest_of_strata >= segment.batch.w ? rest_of_strata - segment.batch.w
-                                                  : rest_of_strata + (strata - segment.batch.w);
-  uint64 whole = slUint64(turn) * strata + offset;
+/// Offset in the segment (0 .. count - 1) of the ray that slot s traces, or kNoTriangle for the few slots
+/// that have none (where the number of strata does not divide count).
+SL_FUNC uint slotOffset(RandomSegment segment, uint slot) {
+  uint stratum = slot / segment.batch.z;
+  uint turn = slot - stratum * segment.batch.z;
+  uint64 whole = slUint64(turn) * segment.batch.y + stratumOffset(segment, stratum);
   return whole < segment.range.w ? slUint(whole) : kNoTriangle;
 }
 
