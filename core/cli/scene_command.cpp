@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "core/cli/commands.h"
+#include "core/scene/generate.h"
+
+namespace sightline {
+namespace {
+
+struct SceneArguments {
+  std::string name;
+  std::string output;
+  std::string cells;
+  uint64_t triangles = 2'000'000;
+  uint64_t seed = 1;
+};
+
+void run(const SceneArguments& arguments) {
+  const std::vector<ViewCell> cells = generateCells(arguments.name, arguments.triangles, arguments.seed);
+  const Scene scene = generateScene(arguments.name, arguments.triangles, arguments.seed);
+  saveScene(scene, arguments.output);
+  const Bounds bounds = sceneBounds(scene);
+  const glm::vec3 size = bounds.high - bounds.low;
+  fmt::print("{}: {} triangles, {} vertices, {} objects, {:.0f} x {:.0f} x {:.0f} m\n", arguments.output,
+             scene.triangles.size(), scene.positions.size(), scene.objects.size(), size.x, size.y, size.z);
+  if (arguments.cells.empty()) return;
+  saveCells(cells, arguments.cells);
+  fmt::print("{}: {} view cells\n", arguments.cells, cells.size());
+}
+
+std::string footer() {
+  std::string text = "Scenes:\n";
+  for (const GeneratedSceneInfo& info : generatedScenes()) {
+    text += fmt::format("  {:<8} {}\n", info.name, info.about);
+  }
+  return text +
+         "Units are metres, y is up. The same name, count and seed give the same file.\n\n"
+         "Examples:\n"
+         "  sightline scene city -o city.glb --cells city.json\n"
+         "  sightline scene plant -o plant.obj --triangles 200000 --seed 7\n";
+}
+
+}  // namespace
+
+void addSceneCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("scene", "Generate a scene, and view cells that fit it");
+  const auto arguments = std::make_shared<SceneArguments>();
+  command->add_option("NAME", arguments->name, "city, canyon, plant or bistro")->required();
+  command->add_option("-o,--output", arguments->output, "File to write: .obj or .glb")->required();
+  command
+      ->add_option("--triangles", arguments->triangles,
+                   "How many, at most: 1000 to 20000000. Extent and detail grow with it")
+      ->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Another seed, another scene of the kind")
+      ->capture_default_str();
+  command->add_option("--cells", arguments->cells,
+                      "Also write ten view cells in the scene's free space to this .json file");
+  command->footer(footer());
+  command->callback([arguments] { run(*arguments); });
+}
+
+}  // namespace sightline
