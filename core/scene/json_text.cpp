@@ -12,7 +12,7 @@ namespace sightline {
 namespace {
 
 /// Far more than any file needs; recursion over a document stays harmless.
-constexpr int kMaxDepth = 200;
+constexpr size_t kMaxDepth = 200;
 
 /// The library's words after its own prefix "[...] parse error at line 1, column 2: ".
 std::string withoutPrefix(const std::string& message) {
@@ -32,24 +32,54 @@ std::string placeOf(std::string_view text, size_t byte, const std::string& file)
   return fmt::format("{}:{}:{}", file, line, column);
 }
 
+/// Throws for what json::parse lets pass. (Its callback could do that too, but takes quadratic time.)
+class StrictReader : public nlohmann::json_sax<nlohmann::json> {
+ public:
+  explicit StrictReader(const std::string& file) : file_(file) {}
+
+  bool start_object(std::size_t) override { return open(); }
+  bool start_array(std::size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool key(std::string& name) override {
+    if (keys_.back().insert(name).second) return true;
+    throw Error(fmt::format("{}: key {} occurs twice in one object", file_, nlohmann::json(name).dump()));
+  }
+
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(number_integer_t) override { return true; }
+  bool number_unsigned(number_unsigned_t) override { return true; }
+  bool number_float(number_float_t, const string_t&) override { return true; }
+  bool string(string_t&) override { return true; }
+  bool binary(binary_t&) override { return true; }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override {
+    return false;  // json::parse says where and why
+  }
+
+ private:
+  bool open() {
+    keys_.emplace_back();
+    if (keys_.size() <= kMaxDepth) return true;
+    throw Error(fmt::format("{}: JSON is nested deeper than {} levels", file_, kMaxDepth));
+  }
+  bool close() {
+    keys_.pop_back();
+    return true;
+  }
+
+  const std::string& file_;
+  std::vector<std::set<std::string>> keys_;  ///< of the objects and lists that are open
+};
+
 }  // namespace
 
 nlohmann::json parseJson(std::string_view text, const std::string& file) {
   using nlohmann::json;
-  std::vector<std::set<std::string>> keys;  // of the objects that are open
-  const auto watch = [&](int depth, json::parse_event_t event, json& parsed) {
-    if (depth > kMaxDepth) {
-      throw Error(fmt::format("{}: JSON is nested deeper than {} levels", file, kMaxDepth));
-    }
-    if (event == json::parse_event_t::object_start) keys.emplace_back();
-    if (event == json::parse_event_t::object_end) keys.pop_back();
-    if (event == json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second) {
-      throw Error(fmt::format("{}: key {} occurs twice in one object", file, parsed.dump()));
-    }
-    return true;
-  };
   try {
-    return json::parse(text, watch);
+    StrictReader reader(file);
+    json::sax_parse(text, &reader);
+    return json::parse(text);
   } catch (const json::parse_error& error) {
     throw Error(fmt::format("{}: {}", placeOf(text, error.byte, file), withoutPrefix(error.what())));
   } catch (const json::exception& error) {
