@@ -31,6 +31,7 @@ class Folder {
   /// Writes a file and returns its path.
   std::filesystem::path write(const std::string& name, std::string_view bytes) const {
     const std::filesystem::path file = path_ / name;
+    std::filesystem::remove(file);  // truncating a file instead makes some file systems write it out at once
     std::ofstream stream(file, std::ios::binary);
     stream.write(bytes.data(), std::streamsize(bytes.size()));
     if (!stream) throw std::runtime_error("cannot write " + file.string());
