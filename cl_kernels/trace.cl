@@ -25,13 +25,14 @@ __kernel void traceRaysKernel(SL_SCENE_ARGS, __global const Ray* input_rays, __g
   }
 }
 
-/// Hits of a segment's random rays, each at its offset in the segment: for benchmarks and tests.
+/// Hits of a segment's random rays, slot by slot (a miss where a slot has none): for benchmarks and tests.
 __kernel void traceSegmentKernel(SL_SCENE_ARGS, RandomSegment segment, Face face, uint4 shifts,
                                  __global Hit* output_hits) {
   Hit hits[SL_PACKET];
   uint offsets[SL_PACKET];
-  traceSlots(SL_SCENE_PACK, segment, face, shifts, (uint)get_global_id(0) * SL_PACKET, offsets, hits);
+  uint first = (uint)get_global_id(0) * SL_PACKET;
+  traceSlots(SL_SCENE_PACK, segment, face, shifts, first, offsets, hits);
   for (uint i = 0; i < SL_PACKET; ++i) {
-    if (offsets[i] != kNoTriangle) output_hits[offsets[i]] = hits[i];
+    if (first + i < segment.batch.y * segment.batch.z) output_hits[first + i] = hits[i];
   }
 }

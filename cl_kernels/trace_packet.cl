@@ -92,22 +92,28 @@ static void tracePacket(SceneRef scene, Packet* p) {
   uint size = 0;
   uint child = 0;
   uint count = 0;
+  // Where a node keeps the planes that the rays meet first and last, in floats; child 1 has them two further.
+  const size_t back_x = p->back_x, ahead_x = 1 - back_x;
+  const size_t back_y = 4 + p->back_y, ahead_y = 5 - p->back_y;
+  const size_t back_z = 8 + p->back_z, ahead_z = 9 - p->back_z;
   for (;;) {
     while (count == 0) {
       __global const float* node = (__global const float*)&scene.nodes[child];
       __global const uint* links = (__global const uint*)(node + 12);
-      float8 near0 = most(most(slab(node[p->back_x], p->inverse_x, p->near_x),
-                               slab(node[4 + p->back_y], p->inverse_y, p->near_y)),
-                          most(slab(node[8 + p->back_z], p->inverse_z, p->near_z), (float8)0.0f));
-      float8 far0 = least(least(slab(node[1 - p->back_x], p->inverse_x, p->far_x),
-                                slab(node[5 - p->back_y], p->inverse_y, p->far_y)),
-                          least(slab(node[9 - p->back_z], p->inverse_z, p->far_z), p->t));
-      float8 near1 = most(most(slab(node[2 + p->back_x], p->inverse_x, p->near_x),
-                               slab(node[6 + p->back_y], p->inverse_y, p->near_y)),
-                          most(slab(node[10 + p->back_z], p->inverse_z, p->near_z), (float8)0.0f));
-      float8 far1 = least(least(slab(node[3 - p->back_x], p->inverse_x, p->far_x),
-                                slab(node[7 - p->back_y], p->inverse_y, p->far_y)),
-                          least(slab(node[11 - p->back_z], p->inverse_z, p->far_z), p->t));
+      __global const float* first_x = node + back_x;
+      __global const float* first_y = node + back_y;
+      __global const float* first_z = node + back_z;
+      __global const float* last_x = node + ahead_x;
+      __global const float* last_y = node + ahead_y;
+      __global const float* last_z = node + ahead_z;
+      float8 near0 = most(most(slab(first_x[0], p->inverse_x, p->near_x), slab(first_y[0], p->inverse_y, p->near_y)),
+                          most(slab(first_z[0], p->inverse_z, p->near_z), (float8)0.0f));
+      float8 far0 = least(least(slab(last_x[0], p->inverse_x, p->far_x), slab(last_y[0], p->inverse_y, p->far_y)),
+                          least(slab(last_z[0], p->inverse_z, p->far_z), p->t));
+      float8 near1 = most(most(slab(first_x[2], p->inverse_x, p->near_x), slab(first_y[2], p->inverse_y, p->near_y)),
+                          most(slab(first_z[2], p->inverse_z, p->near_z), (float8)0.0f));
+      float8 far1 = least(least(slab(last_x[2], p->inverse_x, p->far_x), slab(last_y[2], p->inverse_y, p->far_y)),
+                          least(slab(last_z[2], p->inverse_z, p->far_z), p->t));
       uint meets0 = laneBits(near0 <= far0);
       uint meets1 = laneBits(near1 <= far1);
       if (meets0 != 0 && meets1 != 0) {
@@ -116,7 +122,7 @@ static void tracePacket(SceneRef scene, Packet* p) {
         uint sooner1 = laneBits(near1 < near0) & both;
         bool swap = 2 * popcount(sooner1) > popcount(both);
         stack_near[size] = swap ? near0 : near1;
-        uint first = swap ? 1 : 0;
+        size_t first = swap ? 1 : 0;
         stack_child[size] = links[1 - first];
         stack_count[size] = links[3 - first];
         ++size;

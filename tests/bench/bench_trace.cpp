@@ -172,7 +172,7 @@ struct OpenClState {
     segment_kernel = context.kernel("traceSegmentKernel");
     rays_kernel = context.kernel("traceRaysKernel");
     for (const Run& run : work.runs) {
-      random_hits.push_back(context.buffer(uint64_t(run.segment.range.w) * sizeof(Hit), "hits"));
+      random_hits.push_back(context.buffer(slotCount(run.segment) * sizeof(Hit), "hits"));
     }
     border_rays = context.buffer(work.border.size() * sizeof(Ray), "border rays");
     border_hits = context.buffer(work.border.size() * sizeof(Hit), "hits");
@@ -210,8 +210,13 @@ Contestant openClContestant(const Workload& work, const std::string& device) {
           [&work, state] {
             std::vector<Hit> hits(work.random.size());
             for (size_t i = 0; i < work.runs.size(); ++i) {
-              state->context.read(state->random_hits[i], &hits[work.runs[i].first],
-                                  uint64_t(work.runs[i].segment.range.w) * sizeof(Hit));
+              const Run& run = work.runs[i];
+              std::vector<Hit> by_slot(slotCount(run.segment));
+              state->context.read(state->random_hits[i], by_slot.data(), by_slot.size() * sizeof(Hit));
+              for (uint32_t slot = 0; slot < by_slot.size(); ++slot) {
+                const uint32_t offset = slotOffset(run.segment, slot);
+                if (offset != kNoTriangle) hits[run.first + offset] = by_slot[slot];
+              }
             }
             return hits;
           },
