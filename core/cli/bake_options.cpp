@@ -1,39 +1,40 @@
 #include "core/cli/bake_options.h"
 
+#include <fmt/core.h>
+
 #include <limits>
 #include <map>
 
 namespace sightline {
 namespace {
 
-/// Finite and not negative: CLI11's own range lets "nan" pass.
-CLI::Validator notNegative() {
+constexpr const char* kParamsGroup = "Parameters (they decide the result)";
+
+/// CLI11's own range shows its limits as 4.29497e+09 and lets "nan" pass.
+CLI::Validator between(double low, double high) {
   return CLI::Validator(
-      [](std::string& text) {
-        float value = -1;
-        if (CLI::detail::lexical_cast(text, value) && value >= 0 &&
-            value <= std::numeric_limits<float>::max()) {
-          return std::string();
-        }
-        return "must be 0 or more, and finite, not " + text;
+      [low, high](std::string& text) {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
+        return fmt::format("{} is not a number from {} to {}", text, low, high);
       },
-      "NUMBER");
+      "");
 }
 
 void declareParams(CLI::App& command, BakeParams& params) {
   const auto count = [&](const char* name, auto& value, double low, double high, const char* help) {
     command.add_option(name, value, help)
-        ->check(CLI::Range(low, high))
+        ->check(between(low, high))
         ->type_name("N")
         ->capture_default_str()
-        ->group("Parameters (they decide the result)");
+        ->group(kParamsGroup);
   };
   const auto number = [&](const char* name, auto& value, const char* help) {
     command.add_option(name, value, help)
-        ->check(notNegative())
+        ->check(between(0, double(std::numeric_limits<float>::max())))
         ->type_name("X")
-        ->capture_default_str()
-        ->group("Parameters (they decide the result)");
+        ->default_str(fmt::format("{}", value))
+        ->group(kParamsGroup);
   };
   count("--n-rand", params.n_rand, 1, 4294967293.0, "random rays an iteration");
   count("--n-abs-edge", params.n_abs_edge, 0, 1000, "samples along each long edge of the border polygon");
@@ -48,12 +49,12 @@ void declareParams(CLI::App& command, BakeParams& params) {
   count("--quiet-iterations", params.quiet_iterations, 1, 1000000, "stop after so many of them in a row");
   count("--max-rays", params.max_rays, 0, 1e18, "stop a cell after so many rays (0: no limit)");
   number("--max-seconds", params.max_seconds, "stop a cell after so many seconds (0: no limit)");
-  count("--batch-rays", params.batch_rays, 4096, 1u << 30, "rays of a border or reverse batch at most");
+  count("--batch-rays", params.batch_rays, 4096, 1u << 28, "rays of a border or reverse batch at most");
   count("--validation-rays", params.validation_rays, 0, 1e15, "rays that measure what a cell missed");
   command.add_option("--seed", params.seed, "seed of the random rays")
       ->type_name("N")
       ->capture_default_str()
-      ->group("Parameters (they decide the result)");
+      ->group(kParamsGroup);
 }
 
 void declareMachine(CLI::App& command, BakeOptions& options) {
@@ -65,23 +66,17 @@ void declareMachine(CLI::App& command, BakeOptions& options) {
             ->capture_default_str());
   group(
       command.add_option("--threads", options.device_options.threads, "of the tree and of cpu; 0: all cores")
-          ->check(CLI::Range(0, 4096))
+          ->check(between(0, 4096))
           ->type_name("N")
           ->capture_default_str());
-  group(command
-            .add_option_function<std::string>(
-                "--set",
-                [&options](const std::string& name) {
-                  options.set = name;
-                  options.device_options.set = kSets.at(name);
-                },
-                "how the set is kept: auto, array or hash")
+  const auto setKind = [&options](const std::string& name) { options.device_options.set = kSets.at(name); };
+  group(command.add_option_function<std::string>("--set", setKind, "how the set is kept")
             ->check(CLI::IsMember({"auto", "array", "hash"}))
             ->type_name("KIND"));
   group(command
             .add_option("--memory-budget", options.device_options.memory_budget_bytes,
                         "memory that the device may use, e.g. 4GB (0: what it reports)")
-            ->transform(CLI::AsSizeValue(false))
+            ->transform(CLI::AsSizeValue(false).description(""))
             ->type_name("BYTES"));
   group(command.add_flag("--spatial-splits", options.spatial_splits,
                          "slower build, faster rays in scenes of long triangles"));

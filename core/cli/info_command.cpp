@@ -85,8 +85,7 @@ void showParams(const BakeParams& params) {
 }
 
 void showPvs(const std::filesystem::path& file) {
-  const bool part = lowerExtension(file) == ".part";
-  const PvsFile pvs = part ? loadPartialPvs(file).pvs : loadPvs(file);
+  const PvsFile pvs = loadFinishedCells(file);
   const auto cells = summarize(pvs);
   row("visible sets", fmt::format("{}, format version {}", file.string(), kPvsVersion));
   row("scene",

@@ -130,7 +130,8 @@ class CpuDevice final : public Device {
 
   DeviceCounters counters() override {
     const uint64_t scratch = border_hits_.capacity() * 5 + discontinuities_.capacity() * 4;
-    return {rays_, residentBytes() + set_.bytes() + entries_.capacity() * sizeof(PvsEntry) + scratch};
+    return {rays_, residentBytes() + set_.bytes() + entries_.capacity() * sizeof(PvsEntry) + scratch,
+            set_.isHash()};
   }
 
   std::vector<PvsEntry> readPvs() override { return entries_; }

@@ -36,6 +36,7 @@ struct DeviceOptions {
 struct DeviceCounters {
   uint64_t rays = 0;          ///< traced since beginCell
   uint64_t memory_bytes = 0;  ///< resident on the device now: scene, tree, set, queue, scratch
+  bool hash_set = false;      ///< the set is a hash set, not an array
 };
 
 /// Runs the stages of GVS++ for one view cell at a time, with scene, set and queue resident. Every

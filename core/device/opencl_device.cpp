@@ -140,7 +140,7 @@ class OpenClDevice final : public Device {
     return takeCounters();
   }
 
-  DeviceCounters counters() override { return {rays_, context_.allocatedBytes()}; }
+  DeviceCounters counters() override { return {rays_, context_.allocatedBytes(), set_->capacity() > 0}; }
 
   std::vector<PvsEntry> readPvs() override {
     std::vector<PvsEntry> entries(size_);

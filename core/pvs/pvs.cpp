@@ -125,6 +125,10 @@ PartialPvs loadPartialPvs(const std::filesystem::path& part) {
   return left;
 }
 
+PvsFile loadFinishedCells(const std::filesystem::path& file) {
+  return file.extension() == ".part" ? loadPartialPvs(file).pvs : loadPvs(file);
+}
+
 void savePvs(const PvsFile& pvs, const std::filesystem::path& file) {
   auto temporary = file;
   temporary += ".tmp";

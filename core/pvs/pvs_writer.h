@@ -19,6 +19,9 @@ struct PartialPvs {
 /// Reads a part file. Throws Error if it cannot be read or is another kind or version of file.
 PartialPvs loadPartialPvs(const std::filesystem::path& part);
 
+/// loadPvs, or for a name that ends in ".part" the finished cells of a bake in work. Throws Error.
+PvsFile loadFinishedCells(const std::filesystem::path& file);
+
 /// Writes a .pvs file cell by cell. Cells are appended to a part file, each with its checksum and flushed
 /// to the disk, so that a kill at any moment loses at most the cell in work; finish() completes the file and
 /// renames it. All throw Error.

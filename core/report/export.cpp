@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <iterator>
 
 #include "core/error.h"
@@ -11,9 +10,6 @@
 
 namespace sightline {
 namespace {
-
-/// Cells that an error message lists.
-constexpr size_t kListedCells = 10;
 
 Json objectsJson(const Scene& scene, const CellPvs& cell) {
   Json objects = Json::array();
@@ -52,23 +48,6 @@ void copyObject(const Scene& scene, const SceneObject& object, const CellPvs& ce
 }
 
 }  // namespace
-
-const CellPvs& findCell(const PvsFile& pvs, const std::string& name_or_index) {
-  for (const CellPvs& cell : pvs.cells) {
-    if (cell.cell.name == name_or_index) return cell;
-  }
-  size_t index = 0;
-  const char* end = name_or_index.data() + name_or_index.size();
-  const auto parsed = std::from_chars(name_or_index.data(), end, index);
-  if (parsed.ec == std::errc() && parsed.ptr == end && index < pvs.cells.size()) return pvs.cells[index];
-  std::string names;
-  for (size_t i = 0; i < std::min(pvs.cells.size(), kListedCells); ++i) {
-    names += fmt::format("{}{} {}", i == 0 ? "" : ", ", i, pvs.cells[i].cell.name);
-  }
-  if (pvs.cells.size() > kListedCells) names += ", ...";
-  throw Error(fmt::format("no cell \"{}\"; there are {}: {}", name_or_index, pvs.cells.size(), names),
-              kExitUsage);
-}
 
 std::string idsText(const CellPvs& cell) {
   fmt::memory_buffer text;

@@ -1,14 +1,10 @@
 #pragma once
-#include <filesystem>
 #include <string>
 
 #include "core/pvs/pvs.h"
 #include "core/scene/scene.h"
 
 namespace sightline {
-
-/// The cell of that name, else the one with that number (from 0). Throws Error that lists what there is.
-const CellPvs& findCell(const PvsFile& pvs, const std::string& name_or_index);
 
 /// One decimal id a line, ascending.
 std::string idsText(const CellPvs& cell);

@@ -100,7 +100,7 @@ std::string reportJson(const BakeReport& report) {
                      {"seed", report.params.seed},
                      {"parameters", toJson(report.params)},
                      {"features",
-                      {{"set", report.set},
+                      {{"set", report.set.empty() ? Json(nullptr) : Json(report.set)},
                        {"spatial_splits", report.spatial_splits},
                        {"witnesses", report.witnesses},
                        {"repair", report.repair}}},

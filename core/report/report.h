@@ -38,7 +38,7 @@ struct BakeReport {
   std::string baked_on;              ///< device on which the bake began
   std::optional<DeviceInfo> device;  ///< none: the file was complete, no device was opened
   std::optional<TreeSummary> tree;   ///< as device
-  std::string set = "auto";          ///< --set as asked
+  std::string set;                   ///< "array" or "hash"; empty without a device
   bool spatial_splits = false, witnesses = false, repair = false;
   BakeParams params;
   std::vector<CellSummary> cells;  ///< finished, in order

@@ -1,0 +1,150 @@
+#include <fmt/core.h>
+
+#include <chrono>
+
+#include "core/cli/bake_options.h"
+#include "core/cli/commands.h"
+#include "core/cli/stop_signal.h"
+#include "core/error.h"
+#include "core/gvs/bake.h"
+#include "core/report/progress.h"
+#include "core/report/report.h"
+#include "core/report/text.h"
+#include "core/scene/file_io.h"
+
+namespace sightline {
+namespace {
+
+void say(const std::string& line) {
+  std::fputs((line + "\n").c_str(), stdout);
+  std::fflush(stdout);
+}
+
+/// The default device must not be replaced in silence: say at once what to do.
+void requireOpenCl(const std::string& device) {
+  if (device != "opencl") return;
+  std::string reasons;
+  for (const DeviceInfo& info : listDevices()) {
+    if (info.id.rfind("opencl", 0) != 0) continue;
+    if (info.unusable.empty()) return;
+    reasons += fmt::format(" ({}: {})", info.name, info.unusable);
+  }
+  throw Error(fmt::format(
+      "no OpenCL device can run here{}; install pocl-opencl-icd or a driver, or take --device cpu", reasons));
+}
+
+/// The inputs, as the head of the file that is to be made.
+PvsFile inputsOf(const BakeOptions& options, const Scene& scene) {
+  PvsFile inputs;
+  inputs.scene_hash = hashScene(scene);
+  inputs.triangle_count = uint32_t(scene.triangles.size());
+  inputs.scene_name = options.scene.filename().string();
+  inputs.params = options.params;
+  inputs.has_witnesses = options.witnesses;
+  inputs.planned = loadCells(options.cells);
+  return inputs;
+}
+
+BakeReport startReport(const BakeOptions& options, const Scene& scene, const Bake& bake) {
+  BakeReport report;
+  report.version = SL_VERSION;
+  report.scene = summarize(scene, bake.head().scene_name, bake.head().scene_hash);
+  report.spatial_splits = options.spatial_splits;
+  report.witnesses = options.witnesses;
+  report.repair = options.repair;
+  report.params = options.params;
+  report.planned_cells = bake.head().planned.size();
+  report.resumed_cells = bake.resumed();
+  const std::string warning = materialWarning(report.scene);
+  if (!warning.empty()) say("warning: " + warning);
+  return report;
+}
+
+void sayKept(const Bake& bake, const char* why) {
+  say(fmt::format("{}: {} of {} cells are kept in {}; the same command goes on after them", why,
+                  bake.finished().size(), bake.head().planned.size(), bake.partFile().string()));
+}
+
+/// Builds the tree, opens the device and bakes. Returns the exit code.
+int bakeCells(const BakeOptions& options, const Scene& scene, Bake& bake, BakeReport& report) {
+  BvhConfig config;
+  config.spatial_splits = options.spatial_splits;
+  config.threads = options.device_options.threads;
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles, config);  // the device refers to it
+  report.tree = summarize(bvh);
+  say(fmt::format("tree: built in {}, SAH cost {:.1f}, depth {}", shortDuration(bvh.build_seconds),
+                  bvh.sah_cost, bvh.depth));
+  const auto device = makeDevice(options.device, scene, bvh, options.device_options);
+  report.device = device->info();
+  report.set = device->counters().hash_set ? "hash" : "array";
+  const std::string device_name = report.device->id + ", " + report.device->name;
+  say("device: " + device_name);
+  if (bake.resumed() != 0) {
+    say(fmt::format("{}: goes on after {} of {} cells, begun on {}", bake.partFile().string(), bake.resumed(),
+                    bake.head().planned.size(), bake.head().device));
+  }
+
+  StopSignal stop;
+  ProgressPrinter printer(stdout, terminalColumns(stdout), bake.head().planned, bake.finished());
+  const auto baker = [&](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
+    CellPvs pvs = bakeCell(*device, scene, cell, index, options.params, progress, stop.flag());
+    if (!options.witnesses) pvs.witnesses.clear();
+    return pvs;
+  };
+  BakeEvents events;
+  events.progress = [&](uint32_t index, const BakeProgress& progress) { printer.progress(index, progress); };
+  events.cell_done = [&](uint32_t index, const CellPvs& pvs) { printer.cellDone(index, summarize(pvs)); };
+  try {
+    if (bake.run(device_name, baker, events, stop.flag())) return 0;
+  } catch (const Error&) {
+    printer.breakLine();
+    sayKept(bake, "failed");
+    throw;
+  }
+  printer.breakLine();
+  sayKept(bake, "stopped");
+  return stop.exitCode();
+}
+
+void runBake(const BakeOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  if (!options.report.empty()) OutputFile probe(options.report);  // fail before the work, not after it
+  requireOpenCl(options.device);
+  const Scene scene = loadScene(options.scene, {.repair = options.repair});
+  Bake bake(inputsOf(options, scene), options.out, options.overwrite);
+  say(fmt::format("{}: {} triangles, {} objects; {} cells", options.scene.string(), scene.triangles.size(),
+                  scene.objects.size(), bake.head().planned.size()));
+  BakeReport report = startReport(options, scene, bake);
+
+  int exit_code = 0;
+  if (bake.complete()) {
+    say(fmt::format("{}: already complete, nothing to do (--overwrite bakes again)", options.out.string()));
+  } else {
+    exit_code = bakeCells(options, scene, bake, report);
+  }
+
+  report.cells = bake.finished();
+  report.baked_on = bake.head().device;
+  report.peak_process_bytes = peakProcessBytes();
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (!report.cells.empty()) {
+    std::fputs(("\n" + cellTable(report.cells, bake.head().triangle_count)).c_str(), stdout);
+  }
+  if (!options.report.empty()) {
+    OutputFile file(options.report);
+    file.write(reportJson(report));
+    file.commit();
+  }
+  if (exit_code != 0) throw ExitCode{exit_code};
+}
+
+}  // namespace
+
+void addBakeCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("bake", "Compute the potentially visible set of each view cell");
+  const auto options = std::make_shared<BakeOptions>();
+  declareOptions(*command, *options);
+  command->callback([options] { runBake(*options); });
+}
+
+}  // namespace sightline

@@ -1,0 +1,80 @@
+#include <fmt/core.h>
+
+#include <memory>
+#include <optional>
+
+#include "core/cli/commands.h"
+#include "core/error.h"
+#include "core/pvs/choose_cell.h"
+#include "core/pvs/pvs_writer.h"
+#include "core/report/export.h"
+#include "core/scene/file_io.h"
+
+namespace sightline {
+namespace {
+
+struct ExportOptions {
+  std::filesystem::path pvs, out, scene;
+  std::string cell, format;
+};
+
+void saveText(const std::string& text, const std::filesystem::path& file) {
+  OutputFile out(file);
+  out.write(text);
+  out.commit();
+}
+
+/// saveScene goes by the extension, so it must say the same as --format.
+void requireExtension(const ExportOptions& options) {
+  if (lowerExtension(options.out) == "." + options.format) return;
+  throw Error(fmt::format("{}: must end with .{} for --format {}", options.out.string(), options.format,
+                          options.format),
+              kExitUsage);
+}
+
+void runExport(const ExportOptions& options) {
+  const bool geometry = options.format == "obj" || options.format == "glb";
+  if (geometry) requireExtension(options);
+  if (geometry && options.scene.empty()) {
+    throw Error(
+        fmt::format("--format {} needs --scene: a .pvs file holds ids, not triangles", options.format),
+        kExitUsage);
+  }
+  const PvsFile pvs = loadFinishedCells(options.pvs);
+  const CellPvs& cell = chooseCell(pvs, options.cell, options.pvs);
+  std::optional<Scene> scene;
+  if (!options.scene.empty()) {
+    scene = loadScene(options.scene);
+    requireScene(pvs, *scene, options.pvs);
+  }
+  if (options.format == "ids") saveText(idsText(cell), options.out);
+  if (options.format == "json") saveText(cellJson(pvs, cell, scene ? &*scene : nullptr), options.out);
+  if (geometry) saveScene(visibleScene(*scene, cell), options.out);
+  std::fputs(fmt::format("{}: {} triangles of cell {}\n", options.out.string(), cell.triangles.size(),
+                         cell.cell.name)
+                 .c_str(),
+             stdout);
+}
+
+}  // namespace
+
+void addExportCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("export", "Write one cell's set for other programs");
+  const auto options = std::make_shared<ExportOptions>();
+  command->add_option("pvs", options->pvs, "a bake, or the .part of one in work")
+      ->required()
+      ->type_name("OUT.pvs");
+  command->add_option("--cell", options->cell, "its name, or its number from 0")
+      ->required()
+      ->type_name("NAME|INDEX");
+  command->add_option("--format", options->format, "ids, obj, glb or json")
+      ->required()
+      ->check(CLI::IsMember({"ids", "obj", "glb", "json"}))
+      ->type_name("FORMAT");
+  command->add_option("-o,--output", options->out)->required()->type_name("FILE");
+  command->add_option("--scene", options->scene, "the baked scene: for obj and glb, and for json's objects")
+      ->type_name("SCENE");
+  command->callback([options] { runExport(*options); });
+}
+
+}  // namespace sightline
