@@ -63,6 +63,7 @@ int flushOutput(int exit_code) {
 int main(int argc, char** argv) {
   using namespace sightline;
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not end a bake
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of the write
   CLI::App app("Potentially visible sets of triangle scenes by guided visibility sampling (GVS++)",
                "sightline");
   app.set_version_flag("--version", "sightline " SL_VERSION);

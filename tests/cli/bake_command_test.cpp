@@ -1,0 +1,284 @@
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "core/pvs/cell_summary.h"
+#include "core/pvs/pvs_writer.h"
+#include "tests/cli/run_program.h"
+#include "tests/output/example_pvs.h"
+
+namespace sightline {
+namespace {
+
+using test::ProgramRun;
+using test::runProgram;
+
+/// A folder with a scene of a few hundred triangles (a floor with boxes on it) and cells above the floor.
+class Workplace {
+ public:
+  explicit Workplace(int cells = 3) {
+    std::ofstream scene(folder_ / "blocks.obj");
+    int vertices = 0;
+    for (int x = 0; x < 6; ++x) {
+      for (int z = 0; z < 6; ++z) writeBox(scene, vertices, 4.0 * x, 4.0 * z, 1 + (x * 5 + z * 3) % 4);
+    }
+    std::ofstream out(folder_ / "cells.json");
+    out << "{\"cells\":[";
+    for (int i = 0; i < cells; ++i) {
+      out << fmt::format("{}{{\"name\":\"cell-{}\",\"center\":[{},0.5,10],\"size\":[0.5,0.5,0.5]}}",
+                         i == 0 ? "" : ",", i, 3 + 0.01 * i);
+    }
+    out << "]}";
+  }
+
+  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
+  const std::filesystem::path& path() const { return folder_.path(); }
+
+  /// Arguments of a bake to `out`, quick and on the processor.
+  std::string bake(const std::string& out, const std::string& more = "") const {
+    return fmt::format(
+        "bake {} --cells {} -o {} --device cpu --n-rand 20000 --n-abs-edge 4 --n-rs-edge 4 --n-rs-area 4 "
+        "--validation-rays 20000 {}",
+        *this / "blocks.obj", *this / "cells.json", *this / out, more);
+  }
+
+ private:
+  static void writeBox(std::ofstream& out, int& vertices, double x, double z, double height) {
+    out << fmt::format("o box_{}_{}\n", int(x), int(z));
+    for (int corner = 0; corner < 8; ++corner) {
+      out << fmt::format("v {} {} {}\n", x + (corner & 1 ? 2 : 0), corner & 2 ? height : 0.0,
+                         z + (corner & 4 ? 2 : 0));
+    }
+    for (const auto& f :
+         {std::array{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}}) {
+      out << fmt::format("f {} {} {} {}\n", vertices + f[0], vertices + f[1], vertices + f[2],
+                         vertices + f[3]);
+    }
+    vertices += 8;
+  }
+
+  TemporaryFolder folder_;
+};
+
+/// A program that runs beside the test.
+class Running {
+ public:
+  Running(const std::string& arguments, const std::string& output) {
+    pid_ = ::fork();
+    if (pid_ != 0) return;
+    const int file = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+    ::dup2(file, 1);
+    ::dup2(file, 2);
+    const std::string command = "exec '" SL_PROGRAM "' " + arguments;
+    ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+    ::_exit(127);
+  }
+  void send(int signal) { ::kill(pid_, signal); }
+  /// Exit code, or minus the signal that ended it.
+  int wait() {
+    int status = 0;
+    ::waitpid(pid_, &status, 0);
+    return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
+  }
+
+ private:
+  pid_t pid_;
+};
+
+/// The file without what differs between two runs: the times.
+PvsFile timeless(const std::string& file) {
+  PvsFile pvs = loadPvs(file);
+  for (CellPvs& cell : pvs.cells) {
+    for (StageStats* stage : {&cell.stats.random, &cell.stats.border, &cell.stats.reverse})
+      stage->seconds = 0;
+    cell.stats.seconds = 0;
+    cell.stats.peak_device_bytes = 0;
+  }
+  return pvs;
+}
+
+/// Both files hold the same bytes but for the times.
+void expectSameBake(const Workplace& place, const std::string& a, const std::string& b) {
+  savePvs(timeless(a), place / "a.timeless");
+  savePvs(timeless(b), place / "b.timeless");
+  EXPECT_EQ(readBytes(place / "a.timeless"), readBytes(place / "b.timeless"));
+}
+
+bool contains(const ProgramRun& run, const std::string& part) {
+  return run.output.find(part) != std::string::npos;
+}
+
+std::string readText(const std::string& file) {
+  const auto bytes = readBytes(file);
+  return std::string(bytes.begin(), bytes.end());
+}
+
+/// Waits until the part file holds at least so many cells.
+void waitForCells(const std::string& part, size_t cells) {
+  for (int tries = 0; tries < 2000; ++tries) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    if (std::filesystem::exists(part) && loadPartialPvs(part).pvs.cells.size() >= cells) return;
+  }
+  FAIL() << part << " never held " << cells << " cells";
+}
+
+TEST(BakeCommand, BakesShowsATableAndIsRepeatable) {
+  const Workplace place;
+  const ProgramRun run = runProgram(place.bake("x.pvs"));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_TRUE(contains(run, "432 triangles, 36 objects; 3 cells")) << run.output;
+  EXPECT_TRUE(contains(run, "cell-2 3/3  done")) << run.output;
+  EXPECT_TRUE(contains(run, "missing rays (95 %)")) << run.output;
+  EXPECT_EQ(run.output.find('\r'), std::string::npos);
+  ASSERT_EQ(loadPvs(place / "x.pvs").cells.size(), 3u);
+  EXPECT_GT(loadPvs(place / "x.pvs").cells[0].triangles.size(), 50u);
+  ASSERT_EQ(runProgram(place.bake("y.pvs", "--threads 1")).exit_code, 0);
+  expectSameBake(place, place / "x.pvs", place / "y.pvs");
+}
+
+TEST(BakeCommand, KeepsWitnessesOnlyWhenAsked) {
+  const Workplace place(1);
+  ASSERT_EQ(runProgram(place.bake("with.pvs", "--witnesses")).exit_code, 0);
+  ASSERT_EQ(runProgram(place.bake("without.pvs")).exit_code, 0);
+  const PvsFile with = loadPvs(place / "with.pvs"), without = loadPvs(place / "without.pvs");
+  EXPECT_EQ(with.cells[0].triangles, without.cells[0].triangles);
+  EXPECT_EQ(with.cells[0].witnesses.size(), with.cells[0].triangles.size());
+  EXPECT_TRUE(without.cells[0].witnesses.empty());
+}
+
+TEST(BakeCommand, AgainIsAlreadyComplete) {
+  const Workplace place(1);
+  ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);
+  const auto bytes = readBytes(place / "x.pvs");
+  const ProgramRun again = runProgram(place.bake("x.pvs", "--report " + (place / "r.json")));
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_TRUE(contains(again, "already complete")) << again.output;
+  EXPECT_EQ(readBytes(place / "x.pvs"), bytes);
+  EXPECT_EQ(nlohmann::json::parse(readText(place / "r.json"))["complete"], true);
+}
+
+TEST(BakeCommand, OtherInputsAreAnErrorUntilOverwritten) {
+  const Workplace place(1);
+  ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);
+  const ProgramRun other = runProgram(place.bake("x.pvs", "--seed 2 --threshold 3"));
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_TRUE(contains(other, "threshold (10 there, 3 now), seed (1 there, 2 now)")) << other.output;
+  EXPECT_TRUE(contains(other, "--overwrite")) << other.output;
+  EXPECT_EQ(runProgram(place.bake("x.pvs", "--seed 2 --overwrite")).exit_code, 0);
+  EXPECT_EQ(loadPvs(place / "x.pvs").params.seed, 2u);
+}
+
+TEST(BakeCommand, GoesOnAfterKill) {
+  const Workplace place(8);
+  ASSERT_EQ(runProgram(place.bake("whole.pvs")).exit_code, 0);
+  for (size_t cells : {0u, 1u, 4u}) {
+    const std::string name = fmt::format("killed-{}.pvs", cells);
+    Running bake(place.bake(name), place / "log");
+    waitForCells(place / (name + ".part"), cells);
+    bake.send(SIGKILL);
+    if (bake.wait() != -SIGKILL) continue;  // it was faster than we
+    EXPECT_FALSE(std::filesystem::exists(place / name));
+    const ProgramRun again = runProgram(place.bake(name));
+    EXPECT_EQ(again.exit_code, 0) << again.output;
+    EXPECT_TRUE(cells == 0 || contains(again, "goes on after")) << again.output;
+    expectSameBake(place, place / name, place / "whole.pvs");
+  }
+}
+
+TEST(BakeCommand, CtrlCAndTermKeepWhatIsFinished) {
+  const Workplace place(100);
+  for (int signal : {SIGINT, SIGTERM}) {
+    const std::string name = fmt::format("stopped-{}.pvs", signal);
+    Running bake(place.bake(name, "--report " + (place / "r.json")), place / "log");
+    waitForCells(place / (name + ".part"), 2);
+    bake.send(signal);
+    EXPECT_EQ(bake.wait(), 128 + signal) << readText(place / "log");
+    const std::string log = readText(place / "log");
+    EXPECT_NE(log.find("of 100 cells are kept in"), std::string::npos) << log;
+    EXPECT_NE(log.find("the same command goes on"), std::string::npos) << log;
+    const auto report = nlohmann::json::parse(readText(place / "r.json"));
+    EXPECT_EQ(report["complete"], false);
+    EXPECT_GE(report["cells"].size(), 2u);
+    EXPECT_GE(loadPartialPvs(place / (name + ".part")).pvs.cells.size(), 2u);
+    const ProgramRun info = runProgram("info " + (place / (name + ".part")));
+    EXPECT_EQ(info.exit_code, 0) << info.output;
+    EXPECT_TRUE(contains(info, "of 100 baked")) << info.output;
+  }
+}
+
+TEST(BakeCommand, ReportIsComplete) {
+  const Workplace place(2);
+  const ProgramRun run = runProgram(place.bake("x.pvs", "--set hash --report " + (place / "r.json")));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const auto report = nlohmann::json::parse(readText(place / "r.json"));
+  EXPECT_EQ(report["complete"], true);
+  EXPECT_EQ(report["device"]["id"], "cpu");
+  EXPECT_EQ(report["features"]["set"], "hash");
+  EXPECT_EQ(report["scene"]["triangles"], 432);
+  EXPECT_EQ(report["parameters"]["n_rand"], 20000);
+  EXPECT_GT(report["tree"]["bytes_per_triangle"].get<double>(), 10);
+  EXPECT_GT(report["peak_process_bytes"].get<uint64_t>(), 1u << 20);
+  ASSERT_EQ(report["cells"].size(), 2u);
+  const PvsFile pvs = loadPvs(place / "x.pvs");
+  EXPECT_EQ(report["cells"][1]["pvs_size"], pvs.cells[1].triangles.size());
+  EXPECT_EQ(report["cells"][1]["stages"]["random"]["rays"], pvs.cells[1].stats.random.rays);
+  EXPECT_GT(report["cells"][1]["peak_device_bytes"].get<uint64_t>(), 0u);
+  EXPECT_EQ(report["cells"][1]["validation_rays"], 20000);
+}
+
+TEST(BakeCommand, FailuresAreOneLineBeforeTheWork) {
+  const Workplace place(1);
+  const auto expectLine = [](const std::string& arguments, int exit_code, const std::string& part) {
+    const ProgramRun run = runProgram(arguments);
+    EXPECT_EQ(run.exit_code, exit_code) << arguments << "\n" << run.output;
+    EXPECT_TRUE(contains(run, part)) << arguments << "\n" << run.output;
+    EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+    EXPECT_EQ(run.output.rfind("sightline: ", 0), 0u) << run.output;
+  };
+  expectLine(place.bake("none/x.pvs"), 1, "No such file or directory");
+  expectLine(place.bake("x.pvs", "--report " + (place / "none/r.json")), 1, "none/r.json");
+  expectLine(place.bake("."), 1, "is a folder");
+  expectLine("bake missing.obj --cells " + (place / "cells.json") + " -o x.pvs --device cpu", 1,
+             "missing.obj");
+  expectLine("bake " + (place / "blocks.obj") + " --cells missing.json -o x.pvs --device cpu", 1,
+             "missing.json");
+  expectLine(place.bake("x.pvs", "--n-rand 0"), 2, "--n-rand");
+  expectLine(place.bake("x.pvs", "--delta-abs nan"), 2, "--delta-abs");
+  expectLine(place.bake("x.pvs", "--set other"), 2, "--set");
+  expectLine(place.bake("x.pvs", "--nonsense"), 2, "--help");
+  expectLine("", 2, "--help");
+  writeBytes(place / "damaged.pvs", {1, 2, 3});
+  expectLine(place.bake("damaged.pvs"), 1, "--overwrite");
+  EXPECT_FALSE(std::filesystem::exists(place / "x.pvs.part"));
+}
+
+TEST(BakeCommand, AFullDiskIsAnErrorAndKeepsNothingFalse) {
+  const Workplace place(30);
+  ASSERT_EQ(runProgram(place.bake("whole.pvs")).exit_code, 0);
+  // A limit on the size of files stands in for the disk: writing fails in the middle of a section.
+  const std::string limit = "ulimit -f 2; exec '" SL_PROGRAM "' " + place.bake("x.pvs") + " 2>&1";
+  const std::string log = place / "log";
+  ASSERT_NE(std::system(("sh -c \"" + limit + "\" > " + log).c_str()), 0);
+  EXPECT_NE(readText(log).find("x.pvs.part: cannot write: File too large"), std::string::npos)
+      << readText(log);
+  EXPECT_NE(readText(log).find("cells are kept"), std::string::npos) << readText(log);
+  ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);
+  expectSameBake(place, place / "x.pvs", place / "whole.pvs");
+}
+
+TEST(BakeCommand, AClosedPipeDoesNotEndIt) {
+  const Workplace place(3);
+  const std::string command = "'" SL_PROGRAM "' " + place.bake("x.pvs") + " | true";
+  ASSERT_EQ(std::system(command.c_str()), 0);
+  EXPECT_TRUE(std::filesystem::exists(place / "x.pvs"));
+}
+
+}  // namespace
+}  // namespace sightline

@@ -1,0 +1,140 @@
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/run_program.h"
+#include "tests/output/example_pvs.h"
+
+namespace sightline {
+namespace {
+
+using test::ProgramRun;
+using test::runProgram;
+
+/// A scene of two named quads, its saved set {0, 3}, and cells.
+class Files {
+ public:
+  Files() {
+    std::ofstream(scene()) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 5\nv 1 0 5\nv 1 1 5\nv 0 1 5\n"
+                              "o near\nf 1 2 3 4\no far\nf 5 6 7 8\n";
+    std::ofstream(cells()) << R"({"cells":[{"name":"spot","center":[0,0,9],"size":[1,1,0]}]})";
+    PvsFile file;
+    const Scene loaded = loadScene(scene());
+    file.scene_hash = hashScene(loaded);
+    file.triangle_count = uint32_t(loaded.triangles.size());
+    file.scene_name = "quads.obj";
+    file.device = "cpu";
+    file.planned = loadCells(cells());
+    file.cells = {exampleCell(file.planned[0], {0, 3}, false)};
+    savePvs(file, pvs());
+  }
+  std::string scene() const { return (folder_ / "quads.obj").string(); }
+  std::string cells() const { return (folder_ / "cells.json").string(); }
+  std::string pvs() const { return (folder_ / "x.pvs").string(); }
+  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+void expectSays(const std::string& arguments, std::initializer_list<const char*> parts) {
+  const ProgramRun run = runProgram(arguments);
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  for (const char* part : parts)
+    EXPECT_NE(run.output.find(part), std::string::npos) << part << "\n" << run.output;
+}
+
+void expectFails(const std::string& arguments, int exit_code, const std::string& part) {
+  const ProgramRun run = runProgram(arguments);
+  EXPECT_EQ(run.exit_code, exit_code) << arguments << "\n" << run.output;
+  EXPECT_NE(run.output.find(part), std::string::npos) << arguments << "\n" << run.output;
+  EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
+}
+
+std::string readText(const std::string& file) {
+  const auto bytes = readBytes(file);
+  return std::string(bytes.begin(), bytes.end());
+}
+
+TEST(Program, SaysItsVersionAndCommands) {
+  expectSays("--version", {"sightline "});
+  expectSays("--help", {"bake", "info", "export", "devices"});
+  expectSays("devices", {"cpu"});
+  expectFails("nonsense", 2, "--help");
+}
+
+TEST(InfoCommand, DescribesScenesCellsAndSets) {
+  const Files files;
+  expectSays("info " + files.scene(),
+             {"triangles        4", "vertices         8", "(0, 0, 0) to (1, 1, 5)", "near", "far"});
+  expectSays("info " + files.cells(), {"1 in", "spot", "flat"});
+  expectSays("info " + files.pvs(), {"quads.obj, 4 triangles", "1 of 1 baked", "spot", "50.00 %", "seed"});
+}
+
+TEST(InfoCommand, FailsOnDamagedAndMissingFiles) {
+  const Files files;
+  expectFails("info " + (files / "none.pvs"), 1, "none.pvs");
+  auto bytes = readBytes(files.pvs());
+  bytes[bytes.size() / 2] ^= 1;
+  writeBytes(files / "flipped.pvs", bytes);
+  expectFails("info " + (files / "flipped.pvs"), 1, "damaged");
+  bytes[8] = 2;
+  writeBytes(files / "version.pvs", bytes);
+  expectFails("info " + (files / "version.pvs"), 1, "version 2");
+  EXPECT_EQ(std::system(("'" SL_PROGRAM "' info " + files.scene() + " > /dev/full 2>/dev/null").c_str()),
+            1 << 8);
+  EXPECT_EQ(std::system(("'" SL_PROGRAM "' info " + files.scene() + " | true").c_str()), 0);
+}
+
+TEST(ExportCommand, WritesIdsAndJson) {
+  const Files files;
+  expectSays("export " + files.pvs() + " --cell spot --format ids -o " + (files / "x.txt"), {"2 triangles"});
+  EXPECT_EQ(readText(files / "x.txt"), "0\n3\n");
+  expectSays("export " + files.pvs() + " --cell 0 --format json -o " + (files / "x.json") + " --scene " +
+                 files.scene(),
+             {});
+  const auto json = nlohmann::json::parse(readText(files / "x.json"));
+  EXPECT_EQ(json["ids"], (nlohmann::json{0, 3}));
+  EXPECT_EQ(json["cell"]["name"], "spot");
+  EXPECT_EQ(json["objects"][1]["name"], "far");
+  EXPECT_EQ(json["objects"][1]["visible"], 1);
+}
+
+TEST(ExportCommand, WritesTheVisibleTrianglesAsAScene) {
+  const Files files;
+  for (const std::string format : {"obj", "glb"}) {
+    const std::string out = files / ("visible." + format);
+    expectSays(fmt::format("export {} --cell spot --format {} -o {} --scene {}", files.pvs(), format, out,
+                           files.scene()),
+               {"2 triangles"});
+    const Scene all = loadScene(files.scene()), visible = loadScene(out);
+    ASSERT_EQ(visible.triangles.size(), 2u);
+    for (size_t i = 0; i < 2; ++i) {
+      for (int corner = 0; corner < 3; ++corner) {
+        EXPECT_EQ(visible.positions[visible.triangles[i][corner]],
+                  all.positions[all.triangles[i == 0 ? 0 : 3][corner]]);
+      }
+    }
+    ASSERT_EQ(visible.objects.size(), 2u);
+    EXPECT_EQ(visible.objects[0].name, "near");
+    EXPECT_EQ(visible.objects[1].name, "far");
+  }
+}
+
+TEST(ExportCommand, SaysWhatItNeeds) {
+  const Files files;
+  const std::string start = "export " + files.pvs() + " --cell ";
+  expectFails(start + "spot --format obj -o " + (files / "x.obj"), 2, "--scene");
+  expectFails(start + "spot --format obj -o " + (files / "x.glb") + " --scene " + files.scene(), 2, ".obj");
+  expectFails(start + "other --format ids -o " + (files / "x.txt"), 2, "spot");
+  expectFails(start + "spot --format png -o " + (files / "x.png"), 2, "--format");
+  expectFails(start + "spot --format ids -o " + (files / "none/x.txt"), 1, "none/x.txt");
+  std::ofstream(files / "other.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
+  expectFails(start + "spot --format obj -o " + (files / "x.obj") + " --scene " + (files / "other.obj"), 1,
+              "another scene");
+}
+
+}  // namespace
+}  // namespace sightline
