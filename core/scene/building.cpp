@@ -237,20 +237,15 @@ void gableRoof(MeshBuilder& mesh, float w, float d, float y, uint32_t level) {
   mesh.triangle(gable + 3, gable + 4, gable + 5);
   const uint32_t courses = level < 5 ? 1 : std::min(60u, 4 * (level - 4));
   const uint32_t across = level < 9 ? 1 : std::min(120u, 6 * (level - 8));
-  for (uint32_t slope = 0; slope < 2; ++slope) {
-    for (uint32_t k = 0; k < courses; ++k) {
-      // Each course lifts its lower edge, so that the next one below it lies under.
-      const float s0 = float(k) / float(courses), s1 = float(k + 1) / float(courses);
-      const float lift = courses > 1 ? 0.03f : 0.0f;
-      const float z0 = d / 2 * s0, z1 = d / 2 * s1;
-      const glm::vec3 low(0, y + rise * s0 + lift, slope == 0 ? d - z0 : z0);
-      const glm::vec3 up(0, rise * (s1 - s0) - lift, slope == 0 ? z0 - z1 : z1 - z0);
-      if (slope == 0) {
-        mesh.patch(low, {w, 0, 0}, up, across, 1);
-      } else {
-        mesh.patch(low + glm::vec3(w, 0, 0), {-w, 0, 0}, up, across, 1);
-      }
-    }
+  // Each course starts with a riser: steps down a slope without a slit between them.
+  const float lift = courses > 1 ? 0.03f : 0.0f;
+  for (const float side : {1.0f, -1.0f}) {
+    mesh.sheet(across, 2 * courses - 1, false, [&](uint32_t i, uint32_t j) {
+      const float s = float((j + 1) / 2) / float(courses), along = float(i) / float(across);
+      const float step = j > 0 && j % 2 == 0 ? lift : 0;
+      return glm::vec3(side > 0 ? w * along : w * (1 - along), y + rise * s + step,
+                       d / 2 + side * (d / 2) * (1 - s));
+    });
   }
 }
 

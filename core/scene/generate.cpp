@@ -23,6 +23,9 @@ const std::vector<Generator>& generators() {
       {{"plant", "storeys of pipes with bends, tanks, gratings and steel: heavy occlusion"},
        plantParts,
        plantCells},
+      {{"bistro", "a street of cafes: tables, chairs, cups, lamps, plants, balls of thin fibres"},
+       bistroParts,
+       bistroCells},
   };
   return all;
 }

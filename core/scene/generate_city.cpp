@@ -124,6 +124,11 @@ void addBlock(std::vector<ScenePart>& parts, const CityLayout& city, uint32_t i,
   }
 }
 
+/// Most of the triangles are for houses: what stands in the streets gets fine later.
+uint32_t propLevel(uint32_t level) {
+  return level < 7 ? (level + 1) / 2 : level - 3;
+}
+
 /// One side of a street along a block: its frame stands on the kerb's edge, x points to the street's axis.
 void addStreetSide(std::vector<ScenePart>& parts, const Frame& kerb, float length, const std::string& name,
                    GeneratorRandom random) {
@@ -132,7 +137,7 @@ void addStreetSide(std::vector<ScenePart>& parts, const Frame& kerb, float lengt
     parts.push_back({kind + name + "-" + std::to_string(parts.size()),
                      [frame, own, make](MeshBuilder& mesh, uint32_t level) {
                        mesh.frame = frame;
-                       make(mesh, own, level);
+                       make(mesh, own, propLevel(level));
                      },
                      kPropLevels});
   };
@@ -158,9 +163,10 @@ void addWires(std::vector<ScenePart>& parts, glm::vec3 start, glm::vec3 along, g
               const std::string& name, GeneratorRandom random) {
   for (float at = 12; at + 8 < length; at += 24) {
     const glm::vec3 a = start + along * at + glm::vec3(0, random.uniform(8.5f, 9.5f), 0);
-    parts.push_back({"wire" + name + "-" + std::to_string(parts.size()),
-                     [a, across](MeshBuilder& mesh, uint32_t level) { makeWire(mesh, a, a + across, level); },
-                     kPropLevels});
+    parts.push_back(
+        {"wire" + name + "-" + std::to_string(parts.size()),
+         [a, across](MeshBuilder& mesh, uint32_t level) { makeWire(mesh, a, a + across, propLevel(level)); },
+         kPropLevels});
   }
 }
 

@@ -17,5 +17,7 @@ std::vector<ScenePart> canyonParts(uint64_t triangles, uint64_t seed);
 std::vector<ViewCell> canyonCells(uint64_t triangles, uint64_t seed);
 std::vector<ScenePart> plantParts(uint64_t triangles, uint64_t seed);
 std::vector<ViewCell> plantCells(uint64_t triangles, uint64_t seed);
+std::vector<ScenePart> bistroParts(uint64_t triangles, uint64_t seed);
+std::vector<ViewCell> bistroCells(uint64_t triangles, uint64_t seed);
 
 }  // namespace sightline

@@ -144,7 +144,7 @@ void makeTree(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
     mesh.tube(path, thin, std::max(3u, sides / 2), false);
   }
   const uint32_t leaves = 14 * (level - 4) * (level - 4) + 60;
-  const float size = std::max(0.05f, 1.6f / std::sqrt(float(leaves)));
+  const float size = std::max(0.06f, 3.2f / std::sqrt(float(leaves)));
   for (uint32_t i = 0; i < leaves; ++i) {
     // Uniform in a ball by rejection, pushed out: most leaves are near the surface.
     glm::vec3 p;
