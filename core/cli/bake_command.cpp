@@ -7,6 +7,7 @@
 #include "core/cli/stop_signal.h"
 #include "core/error.h"
 #include "core/gvs/bake.h"
+#include "core/report/cell_pictures.h"
 #include "core/report/progress.h"
 #include "core/report/report.h"
 #include "core/report/text.h"
@@ -65,29 +66,38 @@ void sayKept(const Bake& bake, const char* why) {
                   bake.finished().size(), bake.head().planned.size(), bake.partFile().string()));
 }
 
-/// Builds the tree, opens the device and bakes. Returns the exit code.
-int bakeCells(const BakeOptions& options, const Scene& scene, Bake& bake, BakeReport& report) {
+/// The tree and the device that refers to it.
+struct Tracer {
+  Bvh bvh;
+  std::unique_ptr<Device> device;
+};
+
+/// Fills `tracer` in place: the device refers to its tree.
+void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, BakeReport& report) {
+  requireOpenCl(options.device);
   BvhConfig config;
   config.spatial_splits = options.spatial_splits;
   config.threads = options.device_options.threads;
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles, config);  // the device refers to it
-  report.tree = summarize(bvh);
-  say(fmt::format("tree: built in {}, SAH cost {:.1f}, depth {}", shortDuration(bvh.build_seconds),
-                  bvh.sah_cost, bvh.depth));
-  const auto device = makeDevice(options.device, scene, bvh, options.device_options);
-  report.device = device->info();
-  report.set = device->counters().hash_set ? "hash" : "array";
-  const std::string device_name = report.device->id + ", " + report.device->name;
-  say("device: " + device_name);
+  tracer.bvh = buildBvh(scene.positions, scene.triangles, config);
+  report.tree = summarize(tracer.bvh);
+  say(fmt::format("tree: built in {}, SAH cost {:.1f}, depth {}", shortDuration(report.tree->build_seconds),
+                  report.tree->sah_cost, report.tree->depth));
+  tracer.device = makeDevice(options.device, scene, tracer.bvh, options.device_options);
+  report.device = tracer.device->info();
+  report.set = tracer.device->counters().hash_set ? "hash" : "array";
+  say(fmt::format("device: {}, {}", report.device->id, report.device->name));
+}
+
+/// Bakes what is missing, with progress. Returns the exit code.
+int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Bake& bake) {
   if (bake.resumed() != 0) {
     say(fmt::format("{}: goes on after {} of {} cells, begun on {}", bake.partFile().string(), bake.resumed(),
                     bake.head().planned.size(), bake.head().device));
   }
-
   StopSignal stop;
   ProgressPrinter printer(stdout, terminalColumns(stdout), bake.head().planned, bake.finished());
   const auto baker = [&](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
-    CellPvs pvs = bakeCell(*device, scene, cell, index, options.params, progress, stop.flag());
+    CellPvs pvs = bakeCell(device, scene, cell, index, options.params, progress, stop.flag());
     if (!options.witnesses) pvs.witnesses.clear();
     return pvs;
   };
@@ -95,8 +105,9 @@ int bakeCells(const BakeOptions& options, const Scene& scene, Bake& bake, BakeRe
   events.progress = [&](uint32_t index, const BakeProgress& progress) { printer.progress(index, progress); };
   events.cell_done = [&](uint32_t index, const CellPvs& pvs) { printer.cellDone(index, summarize(pvs)); };
   try {
-    if (bake.run(device_name, baker, events, stop.flag())) return 0;
-  } catch (const Error&) {
+    const DeviceInfo info = device.info();
+    if (bake.run(info.id + ", " + info.name, baker, events, stop.flag())) return 0;
+  } catch (...) {
     printer.breakLine();
     sayKept(bake, "failed");
     throw;
@@ -106,10 +117,31 @@ int bakeCells(const BakeOptions& options, const Scene& scene, Bake& bake, BakeRe
   return stop.exitCode();
 }
 
+void drawCells(const BakeOptions& options, const Scene& scene, Device& device) {
+  const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
+    device.traceRays(rays, hits);
+  };
+  const PvsFile pvs = loadPvs(options.out);
+  for (uint32_t i = 0; i < pvs.cells.size(); ++i) {
+    const double missing = saveCellPictures(trace, scene, pvs.cells[i], i, options.pictures);
+    say(fmt::format("{}: {} of the pixels from inside show a missing triangle",
+                    (options.pictures / pictureName(pvs.cells[i].cell.name, i)).string(), missing));
+  }
+}
+
+void writeReport(const BakeOptions& options, const Bake& bake, BakeReport& report) {
+  report.cells = bake.finished();
+  report.baked_on = bake.head().device;
+  report.peak_process_bytes = peakProcessBytes();
+  if (options.report.empty()) return;
+  OutputFile file(options.report);
+  file.write(reportJson(report));
+  file.commit();
+}
+
 void runBake(const BakeOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   if (!options.report.empty()) OutputFile probe(options.report);  // fail before the work, not after it
-  requireOpenCl(options.device);
   const Scene scene = loadScene(options.scene, {.repair = options.repair});
   Bake bake(inputsOf(options, scene), options.out, options.overwrite);
   say(fmt::format("{}: {} triangles, {} objects; {} cells", options.scene.string(), scene.triangles.size(),
@@ -117,25 +149,23 @@ void runBake(const BakeOptions& options) {
   BakeReport report = startReport(options, scene, bake);
 
   int exit_code = 0;
+  Tracer tracer;
   if (bake.complete()) {
-    say(fmt::format("{}: already complete, nothing to do (--overwrite bakes again)", options.out.string()));
-  } else {
-    exit_code = bakeCells(options, scene, bake, report);
+    say(fmt::format("{}: already complete, nothing to bake (--overwrite bakes again)", options.out.string()));
   }
+  if (!bake.complete() || !options.pictures.empty()) {
+    openTracer(tracer, options, scene, report);
+  }
+  if (!bake.complete()) exit_code = bakeCells(options, scene, *tracer.device, bake);
 
-  report.cells = bake.finished();
-  report.baked_on = bake.head().device;
-  report.peak_process_bytes = peakProcessBytes();
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!report.cells.empty()) {
-    std::fputs(("\n" + cellTable(report.cells, bake.head().triangle_count)).c_str(), stdout);
+  if (!bake.finished().empty()) {
+    std::fputs(("\n" + cellTable(bake.finished(), bake.head().triangle_count)).c_str(), stdout);
+    std::fflush(stdout);
   }
-  if (!options.report.empty()) {
-    OutputFile file(options.report);
-    file.write(reportJson(report));
-    file.commit();
-  }
+  writeReport(options, bake, report);
   if (exit_code != 0) throw ExitCode{exit_code};
+  if (!options.pictures.empty()) drawCells(options, scene, *tracer.device);
 }
 
 }  // namespace

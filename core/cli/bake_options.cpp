@@ -92,6 +92,8 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
       ->type_name("OUT.pvs");
   command.add_option("--report", options.report, "write what was done as JSON (docs/report.md)")
       ->type_name("R.json");
+  command.add_option("--pictures", options.pictures, "draw each cell from outside and from inside, as PNG")
+      ->type_name("DIR");
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
   command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");
   command.add_flag("--overwrite", options.overwrite, "replace a bake with other inputs");

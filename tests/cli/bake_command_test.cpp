@@ -233,6 +233,19 @@ TEST(BakeCommand, ReportIsComplete) {
   EXPECT_EQ(report["cells"][1]["validation_rays"], 20000);
 }
 
+TEST(BakeCommand, DrawsPicturesAlsoOfACompleteBake) {
+  const Workplace place(1);
+  ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);
+  const ProgramRun run = runProgram(place.bake("x.pvs", "--pictures " + (place / "new-folder")));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_TRUE(contains(run, "already complete")) << run.output;
+  for (const char* name : {"new-folder/000-cell-0-outside.png", "new-folder/000-cell-0-inside.png"}) {
+    const auto bytes = readBytes(place / name);
+    ASSERT_GT(bytes.size(), 1000u);
+    EXPECT_EQ(bytes[1], 'P');
+  }
+}
+
 TEST(BakeCommand, FailuresAreOneLineBeforeTheWork) {
   const Workplace place(1);
   const auto expectLine = [](const std::string& arguments, int exit_code, const std::string& part) {
