@@ -40,7 +40,7 @@ static inline float8 preciseDepth8(float8 fax, float8 fay, float8 faz, float8 fb
   long8 mixed = ((u < 0.0) | (v < 0.0) | (w < 0.0)) & ((u > 0.0) | (v > 0.0) | (w > 0.0));
   double8 det = u + v + w;
   double8 depth = (u * convert_double8(faz) + v * convert_double8(fbz) + w * convert_double8(fcz)) / det;
-  return convert_float8(mixed | (det == 0.0) ? (double8)0.0 : depth);
+  return convert_float8((mixed | (det == 0.0)) ? (double8)0.0 : depth);
 }
 
 static inline void intersectRecord8(__global const TriangleRecord* record, Packet* p) {

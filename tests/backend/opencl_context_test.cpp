@@ -79,6 +79,13 @@ TEST_F(OpenCl, AFailedBuildShowsItsLog) {
   }
 }
 
+TEST_F(OpenCl, BuildsWithoutAWarning) {  // PoCL counts them on the user's terminal
+  for (const char* variant : {"-Werror -DSL_PACKET=1", "-Werror -DSL_PACKET=8"}) {
+    OpenClContext context("opencl");
+    EXPECT_NO_THROW(context.build(variant)) << variant;
+  }
+}
+
 TEST_F(OpenCl, BytesComeBackAsWritten) {
   OpenClContext context("opencl");
   const ClBuffer buffer = context.buffer(16, "numbers");
