@@ -10,6 +10,7 @@
 #include "core/device/device.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs.h"
+#include "core/pvs/pvs_writer.h"
 #include "core/report/picture.h"
 #include "core/scene/scene.h"
 
@@ -34,7 +35,7 @@ std::string missingList(const Picture& picture) {
 }
 
 void draw(const PictureCommand& command) {
-  const PvsFile pvs = loadPvs(command.pvs);
+  const PvsFile pvs = loadFinishedCells(command.pvs);
   const CellPvs& cell = chooseCell(pvs, command.cell, command.pvs);
   const Scene scene = loadScene(command.scene, {.repair = command.repair});
   requireScene(pvs, scene, command.pvs);
@@ -54,7 +55,7 @@ void draw(const PictureCommand& command) {
   fmt::print("{} of {} pixels show a triangle outside the set (red)\n", picture.missing_pixels,
              picture.scene_pixels);
   if (!picture.missing_triangles.empty()) {
-    fmt::print("{} triangles outside the set:{}\n", picture.missing_triangles.size(), missingList(picture));
+    fmt::print("triangles outside the set ({}):{}\n", picture.missing_triangles.size(), missingList(picture));
   }
 }
 
@@ -75,7 +76,9 @@ void addPictureCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("picture", "Draw a set: visible triangles green, missing ones red");
   const auto options = std::make_shared<PictureCommand>();
   command->add_option("scene", options->scene, "the scene that was baked")->required()->type_name("SCENE");
-  command->add_option("pvs", options->pvs, "result of sightline bake")->required()->type_name("OUT.pvs");
+  command->add_option("pvs", options->pvs, "a bake, or the .part of one in work")
+      ->required()
+      ->type_name("OUT.pvs");
   command->add_option("--cell", options->cell, "view cell by name, or by index from 0")
       ->required()
       ->type_name("CELL");
