@@ -80,7 +80,7 @@ void setChild(BvhNode2& node, int i, const Box& box, uint32_t child, uint32_t co
 }
 
 void setNoChild(BvhNode2& node, int i) {
-  const float most = std::numeric_limits<float>::max();
+  const float most = std::numeric_limits<float>::infinity();
   setChild(node, i, {splat4(most), splat4(-most)}, 0xffffffffu, 0);
 }
 

@@ -151,7 +151,7 @@ class Collapse {
     BvhNode8 wide;
     for (int i = 0; i < kWidth; ++i) {
       if (i >= slots.count) {
-        const float most = std::numeric_limits<float>::max();
+        const float most = std::numeric_limits<float>::infinity();
         setSlot(wide, i, {splat4(most), splat4(-most)}, kNone, 0);
         continue;
       }

@@ -1,7 +1,7 @@
 // How long the tree takes to build, next to Embree's medium-quality build of the same triangles in the same
 // run, taken in turns, and what the tree is like.
 //
-//   bench_build [--triangles N] [--runs N] [--threads N] [--scene city|soup] [--plain]
+//   bench_build [--triangles N] [--runs N] [--threads N] [--scene city|canyon|plant|bistro|soup] [--plain]
 #include <fmt/core.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -16,17 +16,14 @@
 #include <vector>
 
 #include "bvh/bvh.h"
+#include "core/error.h"
+#include "core/scene/generate.h"
 #ifdef SL_HAVE_EMBREE
 #include <embree3/rtcore.h>
 #endif
 
 namespace sightline {
 namespace {
-
-struct Mesh {
-  std::vector<glm::vec3> positions;
-  std::vector<glm::uvec3> triangles;
-};
 
 struct Options {
   uint32_t triangles = 2'000'000;
@@ -36,51 +33,9 @@ struct Options {
   std::string scene = "city";
 };
 
-void addBox(Mesh& mesh, glm::vec3 low, glm::vec3 high) {
-  static constexpr uint32_t kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
-                                            {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
-  const uint32_t n = static_cast<uint32_t>(mesh.positions.size());
-  for (int i = 0; i < 8; ++i) {
-    mesh.positions.emplace_back(i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z);
-  }
-  for (const auto& q : kQuads) {
-    mesh.triangles.emplace_back(n + q[0], n + q[1], n + q[2]);
-    mesh.triangles.emplace_back(n + q[0], n + q[2], n + q[3]);
-  }
-}
-
-/// Streets of houses with window frames on all four walls; a ground of two large triangles.
-Mesh makeCity(uint32_t triangles) {
-  Mesh mesh;
-  std::mt19937 random(1);
-  const auto uniform = [&](float a, float b) {
-    return a + (b - a) * static_cast<float>(random() >> 8) * 0x1p-24f;
-  };
-  const uint32_t side = static_cast<uint32_t>(std::sqrt(triangles / 12.0 / 180.0)) + 1;
-  addBox(mesh, {-10, -1, -10},
-         {20.0f * static_cast<float>(side) + 10, 0, 20.0f * static_cast<float>(side) + 10});
-  for (uint32_t house = 0; mesh.triangles.size() < triangles; ++house) {
-    const glm::vec3 at(20.0f * static_cast<float>(house % side), 0, 20.0f * static_cast<float>(house / side));
-    const glm::vec3 size(uniform(8, 14), uniform(9, 50), uniform(8, 14));
-    addBox(mesh, at, at + size);
-    for (float y = 1; y < size.y - 2; y += 3) {
-      for (float u = 1; u < size.x - 2; u += 2.5f) {
-        addBox(mesh, at + glm::vec3(u, y, -0.2f), at + glm::vec3(u + 1.2f, y + 1.6f, 0.1f));
-        addBox(mesh, at + glm::vec3(u, y, size.z), at + glm::vec3(u + 1.2f, y + 1.6f, size.z + 0.2f));
-      }
-      for (float u = 1; u < size.z - 2; u += 2.5f) {
-        addBox(mesh, at + glm::vec3(-0.2f, y, u), at + glm::vec3(0.1f, y + 1.6f, u + 1.2f));
-        addBox(mesh, at + glm::vec3(size.x, y, u), at + glm::vec3(size.x + 0.2f, y + 1.6f, u + 1.2f));
-      }
-    }
-  }
-  mesh.triangles.resize(triangles);
-  return mesh;
-}
-
 /// Small triangles anywhere, nothing shared: three positions a triangle.
-Mesh makeSoup(uint32_t triangles) {
-  Mesh mesh;
+Scene makeSoup(uint32_t triangles) {
+  Scene mesh;
   mesh.positions.reserve(size_t{3} * triangles);
   mesh.triangles.reserve(triangles);
   std::mt19937 random(1);
@@ -103,7 +58,7 @@ double median(std::vector<double> values) {
 
 #ifdef SL_HAVE_EMBREE
 /// Seconds that Embree takes to commit a scene with the triangles, ready in its own buffers.
-double embreeSeconds(const Mesh& mesh, RTCDevice device) {
+double embreeSeconds(const Scene& mesh, RTCDevice device) {
   RTCScene scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
@@ -154,7 +109,8 @@ void print(const Row& row, double embree, size_t triangles) {
 }
 
 void run(const Options& options) {
-  const Mesh mesh = options.scene == "soup" ? makeSoup(options.triangles) : makeCity(options.triangles);
+  const Scene mesh = options.scene == "soup" ? makeSoup(options.triangles)
+                                             : generateScene(options.scene, options.triangles, 1);
   const double scene_memory = peakMemory();
   const int threads = options.threads ? options.threads : tbb::info::default_concurrency();
   tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
@@ -213,12 +169,17 @@ int main(int argc, char** argv) {
     } else if (key == "--plain") {
       options.plain = true;
     } else {
-      fmt::print(
-          stderr,
-          "usage: bench_build [--triangles N] [--runs N] [--threads N] [--scene city|soup] [--plain]\n");
+      fmt::print(stderr,
+                 "usage: bench_build [--triangles N] [--runs N] [--threads N] [--scene "
+                 "city|canyon|plant|bistro|soup] [--plain]\n");
       return 2;
     }
   }
-  sightline::run(options);
+  try {
+    sightline::run(options);
+  } catch (const sightline::Error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return error.exitCode();
+  }
   return 0;
 }
