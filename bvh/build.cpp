@@ -1,3 +1,7 @@
+// Top down, by binned SAH and, if asked for, spatial splits. Nodes above kParallelSize references are cut by
+// all threads together, smaller ones are tasks of their own, and from kPieceSize on a task builds all that is
+// below. Nothing depends on which thread does what: bins add up the same in any order, chunks have a fixed
+// size, and the parts are put together depth first at the end (assemble.cpp).
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
@@ -8,6 +12,7 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "bvh/binning.h"
@@ -30,10 +35,14 @@ constexpr uint32_t kParallelSize = 2 * kChunk;
 constexpr float kNodeCost = 2.0f;
 /// From this depth on nodes are halved by count: log2(2^32) = 32 levels reach single references.
 constexpr uint32_t kHalvingDepth = 64;
-
+static_assert(kHalvingDepth + 32 == kMaxDepth);
+/// More references than this would overflow the arithmetic with chunks.
+constexpr uint32_t kMostReferences = 0xffffffffu - kChunk;
 /// A node with a smaller share of the root's surface than this for its children's overlap is not split
 /// spatially (Stich et al., section 4.5).
 constexpr float kLeastOverlap = 1e-5f;
+/// Nor is one whose cost would fall by less than this factor with no overlap at all.
+constexpr float kWorthwhile = 0.98f;
 
 /// A node to be built: references [begin, end) of one of the two arrays, and room for `extra` more behind.
 struct Range {
@@ -86,8 +95,9 @@ glm::vec3 withoutNegativeZero(glm::vec3 p) {
 
 void Builder::makeReferences() {
   const uint32_t n = static_cast<uint32_t>(triangles_.size());
-  const double share = config_.spatial_splits ? std::clamp(config_.split_budget, 0.0f, 1.0f) : 0;
-  const uint32_t extra = static_cast<uint32_t>(std::min(n * share, 4294967295.0 - n));
+  const bool splits = config_.spatial_splits && config_.split_budget > 0;  // NaN is none
+  const double share = splits ? std::min(config_.split_budget, 1.0f) : 0.0f;
+  const uint32_t extra = static_cast<uint32_t>(std::min(n * share, double{kMostReferences} - n));
   for (int i = 0; i < (n > kPieceSize ? 2 : 1); ++i) {
     array_[i] = std::make_unique_for_overwrite<Reference[]>(size_t{n} + extra);
   }
@@ -158,11 +168,20 @@ ObjectSplit Builder::findObject(const Range& range, const BinMapping& mapping,
   return split;
 }
 
+/// Spatial splits remove the overlap of an object split's children. They are not tried where the overlap is
+/// small, and where cutting it off both children would not lower the cost enough.
 bool Builder::worthSpatial(const Range& range, const ObjectSplit& object) const {
   if (range.extra == 0 || range.depth >= kHalvingDepth) return false;
   if (object.axis < 0) return true;
   const Box overlap{max4(object.left.low, object.right.low), min4(object.left.high, object.right.high)};
-  return !overlap.isEmpty() && measure_.halfArea(overlap) > kLeastOverlap * root_area_;
+  if (overlap.isEmpty() || measure_.halfArea(overlap) <= kLeastOverlap * root_area_) return false;
+  Box left = object.left, right = object.right;
+  setLane(left.high, object.axis, lane(overlap.low, object.axis));
+  setLane(right.low, object.axis, lane(overlap.high, object.axis));
+  const float left_cost = left.isEmpty() ? 0 : measure_.halfArea(left) * leafCost(object.left_count);
+  const float right_cost =
+      right.isEmpty() ? 0 : measure_.halfArea(right) * leafCost(range.size() - object.left_count);
+  return left_cost + right_cost < kWorthwhile * object.cost;
 }
 
 SpatialSplit Builder::findSpatial(const Range& range) {
@@ -341,6 +360,8 @@ void Builder::run(Bvh& bvh) {
 Bvh buildBvh(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
              const BvhConfig& config) {
   const auto start = std::chrono::steady_clock::now();
+  if (triangles.empty()) throw std::invalid_argument("a tree needs at least one triangle");
+  if (triangles.size() > kMostReferences) throw std::length_error("too many triangles for one tree");
   BvhConfig checked = config;
   checked.max_leaf_size = std::clamp(config.max_leaf_size, 1u, 8u);
   Bvh bvh;

@@ -11,11 +11,12 @@ namespace sightline {
 /// one entry a level needs a stack of kMaxDepth entries for nodes2 and of 7 * kMaxDepth for nodes8.
 inline constexpr uint32_t kMaxDepth = 96;
 
-/// How to build. The defaults suit triangle soups from 1 to 20 million triangles.
+/// How to build. The defaults suit triangle soups from 1 to 20 million triangles. Values out of range count
+/// as the nearest one in range.
 struct BvhConfig {
   uint32_t max_leaf_size = 4;   ///< references in a leaf, 1..8
-  bool spatial_splits = false;  ///< Stich et al. 2009: up to 30 % more references, fewer box tests
-  float split_budget = 0.3f;    ///< additional references that spatial splits may make, as a share
+  bool spatial_splits = false;  ///< Stich et al. 2009: fewer box tests, more references, slower to build
+  float split_budget = 0.3f;    ///< additional references that spatial splits may make, as a share, 0..1
   int threads = 0;              ///< 0: all cores. The tree does not depend on it.
 };
 
@@ -37,25 +38,32 @@ struct BvhNode8 {
 };
 static_assert(sizeof(BvhNode8) == 256);
 
-/// A bounding volume hierarchy over triangles. Every node's box contains the boxes of its references,
-/// without padding; conservative rounding is the traversal's task (core/shared/box.h).
+/// A bounding volume hierarchy over triangles. Every node's box contains the boxes of what is below it, and a
+/// leaf's box contains its triangles; conservative rounding is the traversal's task (core/shared/box.h). With
+/// spatial splits a triangle may lie in several leaves, and their boxes together contain it: each holds the
+/// part between the leaf's planes, rounded outwards by up to 2^-20 of its largest coordinate.
+/// Empty slots have low = infinity, high = -infinity and come after the used ones.
 struct Bvh {
-  std::vector<BvhNode2> nodes2;      ///< root at 0; a scene of one leaf has child[1] empty (low > high)
-  std::vector<BvhNode8> nodes8;      ///< the same tree collapsed; same leaves
+  std::vector<BvhNode2> nodes2;      ///< root at 0, depth first; a scene of one leaf has child[1] empty
+  std::vector<BvhNode8> nodes8;      ///< the same tree collapsed, root at 0, depth first; same leaves
   std::vector<uint32_t> references;  ///< triangle ids in leaf order; an id may occur several times
   glm::vec3 low{0}, high{0};         ///< bounds of everything
-  double sah_cost = 0;               ///< surface area heuristic: node cost 1, triangle cost 1
-  uint32_t depth = 0;                ///< inner nodes on the longest path of nodes2
+  double sah_cost = 0;  ///< surface area heuristic: node cost 1, triangle cost 1; 0 if the root has no area
+  uint32_t depth = 0;   ///< inner nodes on the longest path of nodes2
   double build_seconds = 0;
 };
 
 /// Builds the tree; the same input gives the same bytes for any number of threads.
-/// Needs at least one triangle; positions finite, indices in range. Throws std::bad_alloc.
+/// Positions must be finite, indices in range. Peak memory is 64 bytes a reference besides the result and
+/// the scene. Throws std::invalid_argument for no triangles, std::length_error for 2^32 - 2^14 or more, and
+/// std::bad_alloc.
 Bvh buildBvh(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles,
              const BvhConfig& config = {});
 
-/// Checks every invariant (boxes contain their children and triangles, every triangle is referenced, leaf
-/// sizes, both layouts hold the same leaves, no node unreachable or reached twice). Empty: valid.
+/// Checks every invariant, trusting no index in the tree, and returns the first complaint; empty: valid.
+/// Boxes contain their children; the leaves' boxes cover each triangle, and none is missing; leaves have 1 to
+/// 8 different references and tile them all; both layouts hold the same leaves; no node is unreachable or
+/// reached twice; empty slots are marked as such; bounds, depth (at most kMaxDepth) and SAH cost are right.
 std::string validate(const Bvh& bvh, std::span<const glm::vec3> positions,
                      std::span<const glm::uvec3> triangles);
 

@@ -93,6 +93,12 @@ inline Float4 min4(Float4 a, Float4 b) {
 inline Float4 max4(Float4 a, Float4 b) {
   return lanes4(a, b, [](float x, float y) { return x > y ? x : y; });
 }
+inline bool lessEqual3(Float4 a, Float4 b) {
+  return a.v[0] <= b.v[0] && a.v[1] <= b.v[1] && a.v[2] <= b.v[2];
+}
+inline void setLane(Float4& a, int i, float s) {
+  a.v[i] = s;
+}
 inline Float4 clearFourth(Float4 a) {
   return {{a.v[0], a.v[1], a.v[2], 0.0f}};
 }

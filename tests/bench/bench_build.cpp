@@ -1,7 +1,8 @@
 // How long the tree takes to build, next to Embree's medium-quality build of the same triangles in the same
 // run, taken in turns, and what the tree is like.
 //
-//   bench_build [--triangles N] [--runs N] [--threads N] [--scene city|canyon|plant|bistro|soup] [--plain]
+//   bench_build [--triangles N] [--runs N] [--threads N] [--scene city|canyon|plant|bistro|soup]
+//   [--plain|--spatial]
 #include <fmt/core.h>
 #include <tbb/global_control.h>
 #include <tbb/info.h>
@@ -29,7 +30,8 @@ struct Options {
   uint32_t triangles = 2'000'000;
   int runs = 5;
   int threads = 0;
-  bool plain = false;
+  bool plain = true;
+  bool spatial = true;
   std::string scene = "city";
 };
 
@@ -114,8 +116,9 @@ void run(const Options& options) {
   const double scene_memory = peakMemory();
   const int threads = options.threads ? options.threads : tbb::info::default_concurrency();
   tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
-  std::vector<Row> rows{{"plain", {}, {}}};
-  if (!options.plain) rows.push_back({"spatial splits", {}, {}});
+  std::vector<Row> rows;
+  if (options.plain) rows.push_back({"plain", {}, {}});
+  if (options.spatial) rows.push_back({"spatial splits", {}, {}});
   std::vector<double> embree;
 #ifdef SL_HAVE_EMBREE
   RTCDevice device = rtcNewDevice(fmt::format("threads={}", threads).c_str());
@@ -167,11 +170,13 @@ int main(int argc, char** argv) {
     } else if (key == "--scene") {
       options.scene = value();
     } else if (key == "--plain") {
-      options.plain = true;
+      options.spatial = false;
+    } else if (key == "--spatial") {
+      options.plain = false;
     } else {
       fmt::print(stderr,
                  "usage: bench_build [--triangles N] [--runs N] [--threads N] [--scene "
-                 "city|canyon|plant|bistro|soup] [--plain]\n");
+                 "city|canyon|plant|bistro|soup] [--plain|--spatial]\n");
       return 2;
     }
   }

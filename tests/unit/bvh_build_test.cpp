@@ -6,6 +6,8 @@
 #include <cstring>
 #include <functional>
 #include <limits>
+#include <stdexcept>
+#include <utility>
 
 #include "bvh/bvh.h"
 #include "tests/unit/bvh_soup.h"
@@ -87,6 +89,22 @@ TEST(BvhBuild, OneTriangleIsOneLeafInOneNode) {
   EXPECT_EQ(bvh.high, glm::vec3(7, 8, 6));
   EXPECT_EQ(bvh.depth, 1u);
   EXPECT_EQ(bvh.sah_cost, 2.0);
+}
+
+TEST(BvhBuild, NoTrianglesAreRefused) {
+  const Soup soup;
+  EXPECT_THROW(buildBvh(soup.positions, soup.triangles), std::invalid_argument);
+}
+
+TEST(BvhBuild, LeafSizesOutOfRangeCountAsTheNearest) {
+  const Soup soup = randomSoup(300, 4, 0.1f);
+  for (const auto& [asked, taken] : {std::pair{0u, 1u}, std::pair{100u, 8u}}) {
+    BvhConfig config;
+    config.max_leaf_size = asked;
+    const Bvh a = buildBvh(soup.positions, soup.triangles, config);
+    config.max_leaf_size = taken;
+    expectSame(a, buildBvh(soup.positions, soup.triangles, config), std::to_string(asked));
+  }
 }
 
 TEST(BvhBuild, MillionIdenticalTrianglesGiveAShallowTree) {
