@@ -10,7 +10,7 @@
 namespace sightline {
 namespace {
 
-/// zstd's default. 19 saves 5 % and takes ten times as long (docs/benchmarks.md).
+/// zstd's default. Level 19 packs ten times slower to save a tenth at most.
 constexpr int kZstdLevel = 3;
 
 /// Bytes of the longest variable-length 32-bit integer: 7 bits a byte.

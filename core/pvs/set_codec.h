@@ -9,8 +9,8 @@
 namespace sightline {
 
 /// Packs ascending, unique ids: runs of consecutive ids as (gap, length - 1) in variable-length integers,
-/// then zstd. Visible triangles come in runs, because file order follows surfaces. Against CRoaring it
-/// takes a quarter to a half of the room at a comparable speed (docs/benchmarks.md).
+/// then zstd. Visible triangles come in runs, because file order follows surfaces. It takes
+/// a third to a sixth of CRoaring's room (docs/benchmarks.md).
 Bytes encodeSet(std::span<const uint32_t> ids);
 
 /// Undoes encodeSet. Nothing if the bytes are damaged, do not hold exactly `count` ids, or hold one that is
