@@ -188,13 +188,20 @@ TEST(PathCells, LeaveNoGapAlongRandomPaths) {
         ASSERT_TRUE(inAnyCell(cells, middle, 1e-9)) << "seed " << seed << " stretch " << i << " at " << s;
       }
       if (!level || i == 0) continue;
-      // The outer corner of the strip at the bend.
-      const glm::dvec3 in = glm::normalize(points[i] - points[i - 1]),
-                       out = glm::normalize(points[i + 1] - points[i]);
-      const glm::dvec3 side = glm::normalize(in - out);
-      const double reach = options.width / 2 / std::sqrt((1 + glm::dot(in, out)) / 2);
-      ASSERT_TRUE(inAnyCell(cells, points[i] + side * reach * 0.999, 1e-9))
-          << "seed " << seed << " bend " << i;
+      // The outer edge of the strip at the bend, from where one stretch ends to where the other begins.
+      const glm::dvec3 in = glm::normalize(points[i] - points[i - 1]);
+      const glm::dvec3 out = glm::normalize(points[i + 1] - points[i]);
+      const double half = options.width / 2;
+      const double turn = glm::cross(in, out).y > 0 ? 1 : -1;
+      const glm::dvec3 foot_in = glm::dvec3(-in.z, 0, in.x) * (turn * half);
+      const glm::dvec3 foot_out = glm::dvec3(-out.z, 0, out.x) * (turn * half);
+      const glm::dvec3 corner = glm::normalize(in - out) * (half / std::sqrt((1 + glm::dot(in, out)) / 2));
+      for (double s = 0; s <= 1; s += 1.0 / 16) {
+        for (const glm::dvec3& foot : {foot_in, foot_out}) {
+          const glm::dvec3 edge = points[i] + (foot + (corner - foot) * s) * 0.999;
+          ASSERT_TRUE(inAnyCell(cells, edge, 1e-9)) << "seed " << seed << " bend " << i << " at " << s;
+        }
+      }
     }
     for (const ViewCell& cell : cells) {
       EXPECT_EQ(cell.size.x, options.width);
