@@ -6,8 +6,10 @@
 #include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstring>
 #include <istream>
+#include <sstream>
 #include <streambuf>
 #include <vector>
 
@@ -149,15 +151,32 @@ class ObjReader {
 
   void face(std::span<const tinyobj::index_t> indices) {
     corners_.clear();
-    const bool huge = hasHugeNumber(lines_->line());
-    for (const tinyobj::index_t& index : indices) {
-      const int64_t number = huge ? int64_t(0) : int64_t(index.vertex_index);
-      const int64_t corner = number < 0 ? vertices_so_far_ + number : number - 1;
-      if (corner >= vertices_so_far_ && !all_vertices_known_) throw ForwardReference();
-      corners_.push_back(corner);
+    if (hasHugeNumber(lines_->line())) {
+      readHugeCorners();
+    } else {
+      for (const tinyobj::index_t& index : indices) addCorner(index.vertex_index);
     }
     const VertexRange vertices{0, int64_t(builder_.positionCount()), 1};
     builder_.addPolygon(corners_, vertices, [this] { return place(); });
+  }
+
+  /// `number` as in the file: from 1, or from the last vertex back for negative ones; 0 is bad.
+  void addCorner(int64_t number) {
+    const int64_t corner = number < 0 ? vertices_so_far_ + number : number - 1;
+    if (corner >= vertices_so_far_ && !all_vertices_known_) throw ForwardReference();
+    corners_.push_back(corner);
+  }
+
+  /// Reads the face from its line, as the library does, but with numbers of 64 bits.
+  void readHugeCorners() {
+    std::istringstream words(std::string(lines_->line()));
+    std::string word;
+    words >> word;  // the "f"
+    while (words >> word) {
+      int64_t number = 0;
+      const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
+      addCorner(result.ec == std::errc::result_out_of_range ? kBeyondAny : number);
+    }
   }
 
   /// Whether a number has ten digits or more: the library would wrap it around.
@@ -188,6 +207,7 @@ class ObjReader {
     builder_.beginObject(both ? object_ + "/" + group_ : (group_.empty() ? object_ : group_), kUnnamed);
   }
 
+  static constexpr int64_t kBeyondAny = 1ll << 62;
   static constexpr const char* kUnnamed = "default";  // the format's own name for it
 
   const FileBytes& bytes_;

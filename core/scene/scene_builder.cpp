@@ -142,8 +142,9 @@ void SceneBuilder::addPolygon(std::span<const int64_t> corners, const VertexRang
   cut_.clear();
   for (size_t i = 0; i < corners.size(); ++i) corners_.push_back(scene_.positions[vertex(i)]);
   if (!triangulate(corners_, cut_)) {
-    throw Error(fmt::format("{}: concave face has {} corners, at most {} are supported; split it", place(),
-                            corners.size(), kMaxConcaveCorners));
+    throw Error(
+        fmt::format("{}: concave face of {} corners is too much (at most {}, not too entangled); split it",
+                    place(), corners.size(), kMaxConcaveCorners));
   }
   for (const glm::uvec3& t : cut_) addTriangle({vertex(t.x), vertex(t.y), vertex(t.z)}, place);
 }

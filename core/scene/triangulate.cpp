@@ -52,33 +52,38 @@ void appendFan(size_t n, std::vector<glm::uvec3>& triangles) {
   for (uint32_t i = 1; i + 1 < n; ++i) triangles.emplace_back(0, i, i + 1);
 }
 
-/// Cuts ears off the outline; `ring` holds the corners that are left.
+/// Cuts ears off the outline; `ring` holds the corners that are left. Usual outlines take a few n * n tests
+/// of a corner against an ear; long spirals, which offer an ear at a time only, come near n * n * n.
 class EarClipper {
  public:
   explicit EarClipper(const std::vector<glm::dvec2>& points) : points_(points), ring_(points.size()) {
     std::iota(ring_.begin(), ring_.end(), 0u);
   }
 
-  void run(std::vector<glm::uvec3>& triangles) {
+  /// False if it takes too long.
+  bool run(std::vector<glm::uvec3>& triangles) {
     size_t candidate = 1;
     while (ring_.size() > 3) {
       const size_t ear = findEar(candidate % ring_.size());
       triangles.emplace_back(before(ear), ring_[ear], after(ear));
       ring_.erase(ring_.begin() + std::ptrdiff_t(ear));
       candidate = ear;
+      if (tests_ > kMaxTests) return false;
     }
     triangles.emplace_back(ring_[0], ring_[1], ring_[2]);
+    return true;
   }
 
  private:
   uint32_t before(size_t i) const { return ring_[(i + ring_.size() - 1) % ring_.size()]; }
   uint32_t after(size_t i) const { return ring_[(i + 1) % ring_.size()]; }
 
-  size_t findEar(size_t start) const {
+  size_t findEar(size_t start) {
     const size_t n = ring_.size();
     size_t convex = n;
     for (size_t step = 0; step < n; ++step) {
       const size_t i = (start + step) % n;
+      ++tests_;
       if (turn(points_[before(i)], points_[ring_[i]], points_[after(i)]) <= 0.0) continue;
       if (isEmpty(i)) return i;
       if (convex == n) convex = i;
@@ -88,11 +93,12 @@ class EarClipper {
 
   /// No other corner lies in the triangle at corner i. Corners at the very places of its own do not count:
   /// outlines with holes pass through the same point twice.
-  bool isEmpty(size_t i) const {
+  bool isEmpty(size_t i) {
     const glm::dvec2& a = points_[before(i)];
     const glm::dvec2& b = points_[ring_[i]];
     const glm::dvec2& c = points_[after(i)];
     for (const uint32_t other : ring_) {
+      ++tests_;
       const glm::dvec2& p = points_[other];
       if (p == a || p == b || p == c) continue;
       if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return false;
@@ -100,8 +106,10 @@ class EarClipper {
     return true;
   }
 
+  static constexpr uint64_t kMaxTests = 300'000'000;  ///< about a second
   const std::vector<glm::dvec2>& points_;
   std::vector<uint32_t> ring_;
+  uint64_t tests_ = 0;
 };
 
 }  // namespace
@@ -122,8 +130,10 @@ bool triangulate(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& tr
     return true;
   }
   if (corners.size() > kMaxConcaveCorners) return false;
-  EarClipper(points).run(triangles);
-  return true;
+  const size_t before = triangles.size();
+  if (EarClipper(points).run(triangles)) return true;
+  triangles.resize(before);
+  return false;
 }
 
 }  // namespace sightline
