@@ -21,6 +21,16 @@ CLI::Validator between(double low, double high) {
       "");
 }
 
+/// Whether makeDevice may know the name: said before the scene is loaded.
+CLI::Validator deviceName() {
+  return CLI::Validator(
+      [](std::string& name) {
+        if (name == "cpu" || name == "opencl" || name.rfind("opencl:", 0) == 0) return std::string();
+        return "no device \"" + name + "\"; sightline devices lists what can run here";
+      },
+      "");
+}
+
 void declareParams(CLI::App& command, BakeParams& params) {
   const auto count = [&](const char* name, auto& value, double low, double high, const char* help) {
     command.add_option(name, value, help)
@@ -62,6 +72,7 @@ void declareMachine(CLI::App& command, BakeOptions& options) {
       {"auto", SetKind::kAuto}, {"array", SetKind::kArray}, {"hash", SetKind::kHash}};
   const auto group = [](CLI::Option* option) { option->group("Machine (same result)"); };
   group(command.add_option("--device", options.device, "cpu, opencl, opencl:INDEX or opencl:PART-OF-NAME")
+            ->check(deviceName())
             ->type_name("NAME")
             ->capture_default_str());
   group(

@@ -16,7 +16,16 @@ std::string line(const DeviceInfo& device) {
 }
 
 void printDevices() {
-  for (const DeviceInfo& device : listDevices()) std::fputs(line(device).c_str(), stdout);
+  bool has_opencl = false;
+  for (const DeviceInfo& device : listDevices()) {
+    std::fputs(line(device).c_str(), stdout);
+    has_opencl = has_opencl || device.id.starts_with("opencl");
+  }
+  if (!has_opencl) {
+    std::fputs(
+        "opencl      none found: install pocl-opencl-icd for the processor, or a GPU's OpenCL driver\n",
+        stdout);
+  }
 }
 
 }  // namespace

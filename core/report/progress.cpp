@@ -18,6 +18,8 @@ constexpr double kTerminalInterval = 0.1;
 constexpr double kPlainInterval = 5;
 /// Columns when a terminal does not say.
 constexpr uint32_t kUsualColumns = 80;
+/// A name is not cut below so many characters.
+constexpr size_t kShortestName = 3;
 
 /// At most `columns` characters of UTF-8 text.
 std::string cut(const std::string& text, uint32_t columns) {
@@ -28,8 +30,34 @@ std::string cut(const std::string& text, uint32_t columns) {
   return text;
 }
 
+size_t width(const std::string& text) {
+  return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+/// Makes the line fit: single instead of double blanks, then a shorter name, then no end. The name is the
+/// line's beginning.
+std::string fit(std::string line, const std::string& name, uint32_t columns) {
+  if (width(line) <= columns) return line;
+  for (size_t at = line.find("  ", name.size()); at != std::string::npos; at = line.find("  ", at)) {
+    line.erase(at, 1);
+  }
+  const size_t excess = width(line) - std::min<size_t>(width(line), columns);
+  const size_t name_width = width(name);
+  if (excess == 0 || name_width <= kShortestName) return cut(line, columns);
+  const size_t kept = std::max(kShortestName, name_width - std::min(name_width, excess + 1));
+  return cut(cut(name, uint32_t(kept)) + "~" + line.substr(name.size()), columns);
+}
+
 std::string place(const std::string& name, uint32_t index, size_t cells) {
   return fmt::format("{} {}/{}", name, index + 1, cells);
+}
+
+/// 0:10, 3:05, 2:07:00.
+std::string clock(double seconds) {
+  if (!(seconds >= 0) || seconds > 1e9) return "?";
+  const auto whole = uint64_t(std::llround(seconds));
+  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
+  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole % 3600 / 60, whole % 60);
 }
 
 }  // namespace
@@ -44,11 +72,11 @@ uint32_t terminalColumns(std::FILE* out) {
 std::string progressLine(const std::string& name, uint32_t index, size_t cells, const BakeProgress& progress,
                          double all_seconds_left) {
   const double rate = progress.seconds > 0 ? double(progress.rays) / progress.seconds * 1e-6 : 0;
-  return fmt::format("{}  iteration {}, {}  {} rays  {:.2f} Mrays/s  PVS {} (+{})  left {}, all {}",
+  return fmt::format("{}  it {} {}  {} rays  {:.2f} Mrays/s  PVS {} +{}  left {}, all {}",
                      place(name, index, cells), progress.iteration,
                      progress.validating ? "validation" : stageName(progress.stage),
                      shortCount(progress.rays), rate, progress.pvs_size, progress.new_triangles,
-                     shortDuration(progress.seconds_left), shortDuration(all_seconds_left));
+                     clock(progress.seconds_left), clock(all_seconds_left));
 }
 
 std::string doneLine(uint32_t index, size_t cells, const CellSummary& cell) {
@@ -73,13 +101,13 @@ double ProgressPrinter::secondsLeft(uint32_t index, const BakeProgress& progress
   return progress.seconds_left + mean * double(planned_.size() - index - 1);
 }
 
-void ProgressPrinter::show(const std::string& line, bool last) {
+void ProgressPrinter::show(const std::string& line, const std::string& name, bool last) {
   std::string text;
   if (columns_ == 0) {
     text = line + "\n";
   } else {
     // One column stays free: some terminals wrap when the last one is filled.
-    text = fmt::format("\r{}\x1b[K{}", cut(line, std::max(columns_, 2u) - 1), last ? "\n" : "");
+    text = fmt::format("\r{}\x1b[K{}", fit(line, name, std::max(columns_, 2u) - 1), last ? "\n" : "");
     line_open_ = !last;
   }
   std::fputs(text.c_str(), out_);  // not fmt::print: a closed pipe must not throw
@@ -93,13 +121,13 @@ void ProgressPrinter::progress(uint32_t index, const BakeProgress& progress) {
   shown_cell_ = index;
   shown_seconds_ = progress.seconds;
   show(progressLine(planned_[index].name, index, planned_.size(), progress, secondsLeft(index, progress)),
-       false);
+       planned_[index].name, false);
 }
 
 void ProgressPrinter::cellDone(uint32_t index, const CellSummary& cell) {
   finished_seconds_ += cell.stats.seconds;
   ++finished_cells_;
-  show(doneLine(index, planned_.size(), cell), true);
+  show(doneLine(index, planned_.size(), cell), cell.cell.name, true);
 }
 
 void ProgressPrinter::breakLine() {

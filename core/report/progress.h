@@ -24,7 +24,7 @@ class ProgressPrinter {
   void breakLine();
 
  private:
-  void show(const std::string& line, bool last);
+  void show(const std::string& line, const std::string& name, bool last);
   double secondsLeft(uint32_t index, const BakeProgress& progress) const;
 
   std::FILE* out_;
@@ -40,7 +40,8 @@ class ProgressPrinter {
 /// Columns of the terminal that `out` is; 0 if it is none.
 uint32_t terminalColumns(std::FILE* out);
 
-/// "street-1 2/10  iteration 3, border  12.3M rays  8.12 Mrays/s  PVS 12345 (+17)  left 12 s, all 3 min 10 s"
+/// "street-1 2/10  it 3 border  12.3M rays  8.12 Mrays/s  PVS 12345 +17  left 0:12, all 3:10": iteration and
+/// stage in work, size of the set and what this iteration added, time left for the cell and for all.
 std::string progressLine(const std::string& name, uint32_t index, size_t cells, const BakeProgress& progress,
                          double all_seconds_left);
 /// The same place's line when the cell is done.

@@ -266,6 +266,7 @@ TEST(BakeCommand, FailuresAreOneLineBeforeTheWork) {
   expectLine(place.bake("x.pvs", "--delta-abs nan"), 2, "--delta-abs");
   expectLine(place.bake("x.pvs", "--set other"), 2, "--set");
   expectLine(place.bake("x.pvs", "--nonsense"), 2, "--help");
+  expectLine("bake a.obj --cells c.json -o x.pvs --device gpu", 2, "sightline devices");
   expectLine("", 2, "--help");
   writeBytes(place / "damaged.pvs", {1, 2, 3});
   expectLine(place.bake("damaged.pvs"), 1, "--overwrite");
@@ -284,6 +285,21 @@ TEST(BakeCommand, AFullDiskIsAnErrorAndKeepsNothingFalse) {
   EXPECT_NE(readText(log).find("cells are kept"), std::string::npos) << readText(log);
   ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);
   expectSameBake(place, place / "x.pvs", place / "whole.pvs");
+}
+
+TEST(BakeCommand, WithoutOpenClItSaysHowAndDoesNotFallBack) {
+  const Workplace place(1);
+  ASSERT_EQ(::setenv("OCL_ICD_VENDORS", "/nonexistent", 1), 0);
+  const ProgramRun bake = runProgram(
+      fmt::format("bake {} --cells {} -o {}", place / "blocks.obj", place / "cells.json", place / "x.pvs"));
+  const ProgramRun devices = runProgram("devices");
+  ::unsetenv("OCL_ICD_VENDORS");
+  EXPECT_EQ(bake.exit_code, 1) << bake.output;
+  EXPECT_TRUE(contains(bake, "pocl-opencl-icd")) << bake.output;
+  EXPECT_TRUE(contains(bake, "--device cpu")) << bake.output;
+  EXPECT_FALSE(std::filesystem::exists(place / "x.pvs.part"));
+  EXPECT_EQ(devices.exit_code, 0);
+  EXPECT_TRUE(contains(devices, "none found")) << devices.output;
 }
 
 TEST(BakeCommand, AClosedPipeDoesNotEndIt) {

@@ -67,8 +67,7 @@ TEST(Text, CountsAndDurationsAreShort) {
 
 TEST(Progress, LineSaysEverything) {
   EXPECT_EQ(progressLine("street-1", 1, 10, at(2), 190),
-            "street-1 2/10  iteration 3, border  12.3M rays  6.15 Mrays/s  PVS 12345 (+17)  left 10 s, all "
-            "3 min 10 s");
+            "street-1 2/10  it 3 border  12.3M rays  6.15 Mrays/s  PVS 12345 +17  left 0:10, all 3:10");
 }
 
 TEST(Progress, PlainLinesComeAtTheStartEveryFewSecondsAndAtTheEnd) {
@@ -102,13 +101,23 @@ TEST(Progress, TerminalLineIsRewrittenAndNeverWraps) {
   }
 }
 
+TEST(Progress, ANarrowTerminalShortensTheNameAndKeepsTheTimeLeft) {
+  Output out;
+  std::vector<ViewCell> cells = threeCells();
+  cells[0].name = "a-street-with-a-long-name";
+  ProgressPrinter printer(out.stream(), 80, cells);
+  printer.progress(0, at(2));
+  EXPECT_EQ(out.text(),
+            "\ra-st~ 1/3 it 3 border 12.3M rays 6.15 Mrays/s PVS 12345 +17 left 0:10, all 0:34\x1b[K");
+}
+
 TEST(Progress, TimeLeftCountsFinishedCells) {
   Output out;
   CellSummary finished = summarize(exampleCell(threeCells()[0], {1}, false));
   finished.stats.seconds = 30;
   ProgressPrinter printer(out.stream(), 0, threeCells(), std::vector{finished});
   printer.progress(1, at(20));  // 20 + 10 s for this one, mean 30 s, one more to come
-  EXPECT_NE(out.text().find("left 10 s, all 40 s"), std::string::npos) << out.text();
+  EXPECT_NE(out.text().find("left 0:10, all 0:40"), std::string::npos) << out.text();
 }
 
 TEST(Progress, TableHasALineACellAndStraightColumns) {
