@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <set>
 
 #include "core/error.h"
 #include "core/scene/gltf_data.h"
@@ -155,12 +156,14 @@ class GltfLoader {
   void reserve(const std::vector<Instance>& instances) {
     uint64_t positions = 0;
     uint64_t triangles = 0;
-    std::map<VertexKey, bool> seen;
+    std::set<VertexKey> seen;
+    std::set<size_t> index_accessors;
     for (const Instance& instance : instances) {
       for (const GltfPrimitive& primitive : document_.meshes[instance.mesh].primitives) {
         if (!hasTriangles(primitive)) continue;
         triangles += triangleCount(primitive, elementCount(primitive));
-        if (seen.emplace(keyOf(*primitive.positions, instance.to_world), true).second) {
+        if (primitive.indices) index_accessors.insert(*primitive.indices);
+        if (seen.insert(keyOf(*primitive.positions, instance.to_world)).second) {
           positions += document_.accessors[*primitive.positions].count;
         }
         if (positions > kMaxElements || triangles > kMaxElements) {
@@ -174,18 +177,35 @@ class GltfLoader {
       throw Error(fmt::format("{}: {} vertices and {} triangles need more memory than this machine has",
                               name_, positions, triangles));
     }
-    for (const auto& [key, unused] : seen) checkAccessor(key.accessor);
+    for (const VertexKey& key : seen) checkPositions(key.accessor);
+    for (const size_t accessor : index_accessors) checkIndices(accessor);
     builder_.reserve(positions, triangles);
   }
 
-  /// Sees, before room is made for it, that the data is there.
-  void checkAccessor(size_t accessor) {
+  /// Sees, before room is made for it, that the data is there. (Sparse values alone, over zeros that no view
+  /// holds, are refused too: they make no mesh, and would let a small file claim any count.)
+  void checkPositions(size_t accessor) {
     const GltfAccessor& positions = document_.accessors[accessor];
     if (positions.width != 3) {
       throw Error(fmt::format("{}: accessors[{}].type: positions need VEC3", name_, accessor));
     }
-    if (!positions.view && !positions.sparse) {
+    if (!positions.view) {
       throw Error(fmt::format("{}: accessors[{}]: positions without a bufferView", name_, accessor));
+    }
+    GltfReader(document_, data_, accessor, name_);
+  }
+
+  void checkIndices(size_t accessor) {
+    const GltfAccessor& indices = document_.accessors[accessor];
+    const bool whole = indices.component == GltfComponent::kUnsignedByte ||
+                       indices.component == GltfComponent::kUnsignedShort ||
+                       indices.component == GltfComponent::kUnsignedInt;
+    if (!whole || indices.width != 1) {
+      throw Error(
+          fmt::format("{}: accessors[{}]: indices need SCALAR of 5121, 5123 or 5125", name_, accessor));
+    }
+    if (!indices.view) {
+      throw Error(fmt::format("{}: accessors[{}]: indices without a bufferView", name_, accessor));
     }
     GltfReader(document_, data_, accessor, name_);
   }
@@ -234,19 +254,9 @@ class GltfLoader {
 
   void addIndexed(const GltfPrimitive& primitive, const VertexRange& vertices, const std::string& place) {
     const size_t index = *primitive.indices;
-    const GltfAccessor& accessor = document_.accessors[index];
-    const bool whole = accessor.component == GltfComponent::kUnsignedByte ||
-                       accessor.component == GltfComponent::kUnsignedShort ||
-                       accessor.component == GltfComponent::kUnsignedInt;
-    if (!whole || accessor.width != 1) {
-      throw Error(fmt::format("{}: accessors[{}]: indices need SCALAR of 5121, 5123 or 5125", name_, index));
-    }
-    if (!accessor.view && !accessor.sparse) {
-      throw Error(fmt::format("{}: accessors[{}]: indices without a bufferView", name_, index));
-    }
     GltfReader reader(document_, data_, index, name_);
     const std::string where = fmt::format("{}, indices in accessors[{}]", place, index);
-    addTriangles(primitive.mode, accessor.count, vertices, where,
+    addTriangles(primitive.mode, reader.count(), vertices, where,
                  [&](uint64_t i) { return reader.index(i); });
   }
 

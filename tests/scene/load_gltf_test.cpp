@@ -234,8 +234,8 @@ TEST(LoadGltf, ErrorsNameThePlace) {
        "accessors[0]: 5 elements from byte 0 on lie outside of the buffer view with its 48 bytes"},
       {[](json& d) { d["accessors"][0]["count"] = 4611686018427387904ull; },
        "more than 4294967293 vertices or triangles"},
-      {[](json& d) { d["accessors"][1]["count"] = 7; },
-       "meshes[0].primitives[0]: 7 corners are no multiple of 3; --repair drops the last"},
+      {[](json& d) { d["accessors"][1]["count"] = 5; },
+       "meshes[0].primitives[0]: 5 corners are no multiple of 3; --repair drops the last"},
       {[](json& d) { d["accessors"][0]["byteOffset"] = 4; },
        "accessors[0]: 4 elements from byte 4 on lie outside of the buffer view with its 48 bytes"},
       {[](json& d) { d["accessors"][0]["byteOffset"] = 18446744073709551615ull; },
@@ -345,6 +345,12 @@ TEST(LoadGltf, HugeClaimsTakeNoMemory) {
   file.document["bufferViews"][0]["byteLength"] = 1ull << 46;
   file.document["bufferViews"][0]["extensions"]["EXT_meshopt_compression"]["count"] = (1ull << 46) / 12;
   EXPECT_NE(loadError("a.glb", file.glb()).find("does not fit the data"), std::string::npos);
+
+  GltfFile indices = squareFile<uint16_t>(5123);
+  indices.document["accessors"][1]["count"] = 3'000'000'000u;
+  EXPECT_EQ(loadError("a.glb", indices.glb()),
+            "a.glb: accessors[1]: 3000000000 elements from byte 0 on lie outside of the buffer view with its "
+            "12 bytes");
 
   GltfFile many;
   const size_t view = many.addView(std::string(3'000'000, '\0'), 12);
