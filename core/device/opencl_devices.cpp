@@ -1,10 +1,13 @@
 #include "core/device/opencl_devices.h"
 
 #include <fmt/format.h>
+#include <pwd.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cstdlib>
 
 #include "core/error.h"
 
@@ -50,6 +53,18 @@ OpenClDevice describeDevice(cl_device_id id, size_t index) {
     device.info.unusable = error.what();
   }
   return device;
+}
+
+/// Without HOME, PoCL would keep compiled kernels in /tmp, where others may write: sends it to the cache
+/// folder of the user's entry in the password file, or tells it to keep nothing.
+void keepCacheInUsersFolder() {
+  if (std::getenv("POCL_CACHE_DIR") || std::getenv("XDG_CACHE_HOME") || std::getenv("HOME")) return;
+  const passwd* user = getpwuid(getuid());
+  if (user && user->pw_dir && user->pw_dir[0] == '/') {
+    setenv("POCL_CACHE_DIR", (std::string(user->pw_dir) + "/.cache/pocl").c_str(), 0);
+  } else {
+    setenv("POCL_KERNEL_CACHE", "0", 0);
+  }
 }
 
 std::string lowerCase(std::string text) {
@@ -100,6 +115,7 @@ const OpenClDevice* match(const std::vector<OpenClDevice>& devices, const std::s
 }  // namespace
 
 std::vector<OpenClDevice> findOpenClDevices() {
+  keepCacheInUsersFolder();
   std::vector<OpenClDevice> devices;
   cl_uint platform_count = 0;
   // Without an installed driver the loader answers with an error; that is no failure of ours.
