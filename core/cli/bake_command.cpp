@@ -31,7 +31,9 @@ void requireOpenCl(const std::string& device) {
     reasons += fmt::format(" ({}: {})", info.name, info.unusable);
   }
   throw Error(fmt::format(
-      "no OpenCL device can run here{}; install pocl-opencl-icd or a driver, or take --device cpu", reasons));
+      "no OpenCL device can run here{}; install pocl-opencl-icd or a driver, or take --device cpu (PoCL also "
+      "needs a cache folder that it can write: POCL_CACHE_DIR, else ~/.cache)",
+      reasons));
 }
 
 /// The inputs, as the head of the file that is to be made.
