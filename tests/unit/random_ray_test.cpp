@@ -58,7 +58,7 @@ TEST_P(Strata, EnumerateEveryRayOnce) {
     }
   }
   for (uint32_t i = 0; i < count; ++i) ASSERT_EQ(seen[i], 1) << "offset " << i;
-  EXPECT_LE(empty, count / 32 + 64);
+  EXPECT_LE(empty, count / 16 + 64);  // what makeRandomSegment allows itself
 }
 
 INSTANTIATE_TEST_SUITE_P(Runs, Strata,
@@ -74,11 +74,15 @@ TEST(Strata, PacketsAreCoherent) {
   int packets = 0;
   for (uint32_t slot = 0; slot + 8 <= slotCount(segment); slot += 8 * 997, ++packets) {
     vec3 sum(0);
-    for (uint32_t lane = 0; lane < 8; ++lane)
-      sum += vec3(slotRay(segment, face, uvec4(1, 2, 3, 4), slot + lane).direction);
-    spread += 1 - glm::length(sum) / 8;
+    float rays = 0;  // an empty slot has no direction
+    for (uint32_t lane = 0; lane < 8; ++lane) {
+      const vec3 direction(slotRay(segment, face, uvec4(1, 2, 3, 4), slot + lane).direction);
+      rays += direction == vec3(0) ? 0.0f : 1.0f;
+      sum += direction;
+    }
+    if (rays > 0) spread += 1 - glm::length(sum) / rays;
   }
-  EXPECT_LT(spread / packets, 0.02) << "directions of a packet should almost agree";
+  EXPECT_LT(spread / packets, 0.005) << "directions of a packet should almost agree";
 }
 
 TEST(RandomRay, OriginsLieOnTheFaceAndFillIt) {
