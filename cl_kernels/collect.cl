@@ -56,7 +56,7 @@ static inline Ray segmentRayAt(__global const RandomSegment* segments, uint segm
     const RandomSegment segment = segments[s];
     const uint offset = index - segment.batch.x;
     if (offset < segment.range.w) {
-      return randomRay(segmentFirst(segment) + offset, faces[segment.range.x], params.shifts);
+      return randomRay(segmentFirst(segment), offset, faces[segment.range.x], params.shifts);
     }
   }
   return noRay();
@@ -84,7 +84,8 @@ __kernel void appendEntries(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global
   } else if (stage == kStageBorder) {
     ray = borderRayAt(scene, source.border, params, index - 1);
   } else {
-    ray = reverseRayAt(scene, source, faces, params, index - 1);
+    ReverseWalk walk = startReverseWalk();
+    ray = walkToReverseRay(&walk, scene, source, faces, params, index - 1);
   }
   PvsEntry entry;
   entry.origin_triangle = (uint4)(as_uint3(ray.origin.xyz), triangle);

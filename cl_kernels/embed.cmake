@@ -1,10 +1,10 @@
-# Flattens ENTRY and what it includes (each file once) into OUTPUT, a C++ file that defines
+# Flattens ENTRY and what it includes (each file once, .inl files every time) into OUTPUT, a C++ file that defines
 # sightline::kProgramSource. Lines keep their file and number in build logs through #line.
 cmake_minimum_required(VERSION 3.25)
 set(done "")
 set(text "")
 function(flatten path)
-  if(path IN_LIST done)
+  if(path IN_LIST done AND NOT path MATCHES "\\.inl$")
     return()
   endif()
   list(APPEND done ${path})

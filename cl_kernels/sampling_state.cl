@@ -42,17 +42,6 @@ static inline void countRays(volatile __global uint* counters, uint rays) {
   if (rays > 0) atomic_add(&counters[get_group_id(0) % SL_COUNTERS], rays);
 }
 
-static inline Ray noRay() {
-  Ray ray;
-  ray.origin = (float4)(0);
-  ray.direction = (float4)(0);
-  return ray;
-}
-
-static inline bool hasDirection(Ray ray) {
-  return ray.direction.x != 0 || ray.direction.y != 0 || ray.direction.z != 0;
-}
-
 /// Where border rays come from: entries first .. of the list, borderRayCount rays each.
 typedef struct BorderSource {
   __global const uint* record_of;
@@ -60,13 +49,39 @@ typedef struct BorderSource {
   uint first;
 } BorderSource;
 
-/// Border ray `index` (0 ..) of the source.
-static inline Ray borderRayAt(SceneRef scene, BorderSource source, StageParams params, uint index) {
+/// A walk over border rays: rays one after the other share the side of a border polygon.
+typedef struct BorderWalk {
+  uint place;  ///< entry * 3 + side; kNoTriangle before the first ray
+  float3 origin;
+  BorderEdge edge;
+} BorderWalk;
+
+static inline BorderWalk startBorderWalk() {
+  BorderWalk walk;
+  walk.place = kNoTriangle;
+  return walk;
+}
+
+/// Border ray `index` (0 ..) of the source; moves the walk there.
+static inline Ray walkToBorderRay(BorderWalk* walk, SceneRef scene, BorderSource source, StageParams params,
+                                  uint index) {
   const uint per_entry = borderRayCount(params);
-  const uint place = index / per_entry;
-  const uint4 entry = source.entries[source.first + place].origin_triangle;
-  const Corners corners = triangleCorners(scene, source.record_of, entry.w);
-  return borderRay(corners.a, corners.b, corners.c, index - place * per_entry, as_float4(entry).xyz, params);
+  const uint entry_index = index / per_entry;
+  const uint k = index - entry_index * per_entry;
+  const uint side = borderSide(k, params);
+  if (entry_index * 3 + side != walk->place) {
+    const uint4 entry = source.entries[source.first + entry_index].origin_triangle;
+    const Corners corners = triangleCorners(scene, source.record_of, entry.w);
+    walk->place = entry_index * 3 + side;
+    walk->origin = as_float4(entry).xyz;
+    walk->edge = borderEdge(corners.a, corners.b, corners.c, side, walk->origin, params);
+  }
+  return borderRay(walk->edge, k, walk->origin, params);
+}
+
+static inline Ray borderRayAt(SceneRef scene, BorderSource source, StageParams params, uint index) {
+  BorderWalk walk = startBorderWalk();
+  return walkToBorderRay(&walk, scene, source, params, index);
 }
 
 /// Where reverse rays come from: discontinuities first .. of the last border launch.
@@ -78,28 +93,53 @@ typedef struct ReverseSource {
   ulong items_before;                    ///< discontinuities of the cell before this border launch
 } ReverseSource;
 
-/// Reverse ray `index` (0 ..) of the source; none where its start point sees only the occluder.
-static inline Ray reverseRayAt(SceneRef scene, ReverseSource source, __global const Face* faces, StageParams params,
-                               uint index) {
-  const uint per_item = reverseRayCount(params);
-  const uint place = index / per_item;
-  const uint item = source.first + place;
-  const uint k = index - place * per_item;
-  const uint border_index = source.discontinuities[item];
+/// Discontinuity `place` (0 ..) of the source.
+static inline ReverseItem reverseItemAt(SceneRef scene, ReverseSource source, __global const Face* faces,
+                                        StageParams params, uint place) {
+  const uint border_index = source.discontinuities[source.first + place];
   const Ray border = borderRayAt(scene, source.border, params, border_index);
   const float3 target = add3(border.origin.xyz, border.direction.xyz);
+  const ulong number = source.items_before + source.first + place;
   uint mask = 0;
   for (uint f = 0; f < params.counts.w; ++f) mask |= (faceLooksAt(faces[f], target) ? 1u : 0u) << f;
-  if (mask == 0) return noRay();
-  const ulong number = source.items_before + item;
-  const Face face = faces[reverseFace(mask, item, k)];
-  const Ray ray = reverseRay(reverseOrigin(face, number, k, params), target);
+  ReverseItem item;
+  item.target = (float4)(target, 0);
   const uint occluder = source.border_hits[border_index];
+  item.number = (uint4)((uint)number, (uint)(number >> 32), mask, occluder != kNoTriangle);
+  item.a = item.b = item.c = (float4)(0);
   if (occluder != kNoTriangle) {
     const Corners corners = triangleCorners(scene, source.border.record_of, occluder);
-    if (segmentMeetsTriangle(ray, corners.a, corners.b, corners.c)) return noRay();
+    item.a.xyz = corners.a;
+    item.b.xyz = corners.b;
+    item.c.xyz = corners.c;
   }
-  return ray;
+  return item;
+}
+
+/// A walk over reverse rays: rays one after the other share a discontinuity.
+typedef struct ReverseWalk {
+  uint place;  ///< kNoTriangle before the first ray
+  ReverseItem item;
+} ReverseWalk;
+
+static inline ReverseWalk startReverseWalk() {
+  ReverseWalk walk;
+  walk.place = kNoTriangle;
+  return walk;
+}
+
+/// Reverse ray `index` (0 ..) of the source, or none; moves the walk there.
+static inline Ray walkToReverseRay(ReverseWalk* walk, SceneRef scene, ReverseSource source,
+                                   __global const Face* faces, StageParams params, uint index) {
+  const uint per_item = reverseRayCount(params);
+  const uint place = index / per_item;
+  const uint k = index - place * per_item;
+  if (place != walk->place) {
+    walk->place = place;
+    walk->item = reverseItemAt(scene, source, faces, params, place);
+  }
+  if (walk->item.number.z == 0) return noRay();
+  return reverseRay(walk->item, faces[reverseFace(walk->item, k)], k, params);
 }
 
 #endif

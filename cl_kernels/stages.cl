@@ -51,8 +51,9 @@ __kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StageParam
   const uint count = min((uint)SL_PACKET, total - min(first, total));
   Ray rays[SL_PACKET];
   Hit hits[SL_PACKET];
+  BorderWalk walk = startBorderWalk();
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
-    rays[lane] = lane < count ? borderRayAt(scene, source, params, first + lane) : noRay();
+    rays[lane] = lane < count ? walkToBorderRay(&walk, scene, source, params, first + lane) : noRay();
   }
   traceRays(scene, rays, hits);
   uint bits = 0;
@@ -76,9 +77,10 @@ __kernel void traceReverse(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global 
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   Ray rays[SL_PACKET];
   Hit hits[SL_PACKET];
+  ReverseWalk walk = startReverseWalk();
   uint traced = 0;
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
-    rays[lane] = first + lane < total ? reverseRayAt(scene, source, faces, params, first + lane) : noRay();
+    rays[lane] = first + lane < total ? walkToReverseRay(&walk, scene, source, faces, params, first + lane) : noRay();
     traced += hasDirection(rays[lane]) ? 1 : 0;
   }
   if (traced == 0) return;

@@ -28,6 +28,74 @@ constexpr uint32_t kPacket = 8;
 constexpr size_t kGrain = 64;
 
 class CpuDevice final : public Device {
+  // Generators first: their types are deduced.
+  /// A ray with its index (1 ..) in the batch.
+  struct BatchRay {
+    Ray ray;
+    uint32_t index;
+  };
+
+  /// Generator of a segment's random rays, by slot.
+  auto slotRays(const RandomSegment& segment, uvec4 shifts) const {
+    return
+        [&segment, shifts, face = faces_.at(segment.range.x), walk = startSlotWalk()](uint32_t slot) mutable {
+          walk = walkToSlot(walk, segment, slot);
+          const uint32_t offset = walkOffset(walk, segment, slot);
+          return BatchRay{offsetRay(segment, face, shifts, offset), segment.batch.x + offset};
+        };
+  }
+
+  /// Generator of the border rays of the last traceBorder.
+  auto borderRays() const {
+    return [this, place = kNoTriangle, edge = BorderEdge{}, origin = vec3(0)](uint32_t number) mutable {
+      const uint32_t per_entry = borderRayCount(params_);
+      const uint32_t entry_index = number / per_entry, k = number % per_entry;
+      const uint32_t side = borderSide(k, params_);
+      if (place != entry_index * 3 + side) {
+        place = entry_index * 3 + side;
+        const uvec4 entry = entries_[border_first_ + entry_index].origin_triangle;
+        origin = vec3(uintBitsToFloat(entry.x), uintBitsToFloat(entry.y), uintBitsToFloat(entry.z));
+        edge = borderEdge(corner(entry.w, 0), corner(entry.w, 1), corner(entry.w, 2), side, origin, params_);
+      }
+      return BatchRay{borderRay(edge, k, origin, params_), number + 1};
+    };
+  }
+
+  /// Generator of the reverse rays of the last traceReverse; excluded ones have no direction.
+  auto reverseRays() const {
+    return [this, place = kNoTriangle, item = ReverseItem{}](uint32_t number) mutable {
+      const uint32_t per_item = reverseRayCount(params_);
+      const uint32_t k = number % per_item;
+      if (place != number / per_item) {
+        place = number / per_item;
+        item = reverseItem(reverse_first_ + place);
+      }
+      if (item.number.z == 0) return BatchRay{noRay(), number + 1};
+      return BatchRay{reverseRay(item, faces_[reverseFace(item, k)], k, params_), number + 1};
+    };
+  }
+
+  /// A discontinuity of the last traceBorder.
+  ReverseItem reverseItem(uint32_t index) const {
+    const uint32_t border_index = discontinuities_[index];
+    const Ray border = borderRays()(border_index).ray;
+    const vec3 target = add3(xyz3(border.origin), xyz3(border.direction));
+    const uint64_t number = items_before_ + index;
+    uint32_t mask = 0;
+    for (size_t f = 0; f < faces_.size(); ++f) mask |= (faceLooksAt(faces_[f], target) ? 1u : 0u) << f;
+    ReverseItem item{};
+    item.target = vec4(target, 0);
+    const uint32_t occluder = border_hits_[border_index];
+    item.number = uvec4(static_cast<uint32_t>(number), static_cast<uint32_t>(number >> 32), mask,
+                        occluder != kNoTriangle ? 1 : 0);
+    if (occluder != kNoTriangle) {
+      item.a = vec4(corner(occluder, 0), 0);
+      item.b = vec4(corner(occluder, 1), 0);
+      item.c = vec4(corner(occluder, 2), 0);
+    }
+    return item;
+  }
+
  public:
   CpuDevice(const Scene& scene, const Bvh& bvh, const DeviceOptions& options)
       : scene_(scene),
@@ -52,12 +120,9 @@ class CpuDevice final : public Device {
 
   void traceRandom(const RandomSegment& segment) override {
     segments_.push_back(segment);
-    const Face face = faces_.at(segment.range.x);
     rays_ += launch(
-        slotCount(segment), [&](uint32_t slot) { return slotRay(segment, face, params_.shifts, slot); },
-        [&](uint32_t slot, const Ray&, const Hit& hit, SetRef set) {
-          insertHit(set, hit.triangle, segment.batch.x + slotOffset(segment, slot));
-        });
+        slotCount(segment), [&] { return slotRays(segment, params_.shifts); },
+        [&](const BatchRay& ray, const Hit& hit, SetRef set) { insertHit(set, hit.triangle, ray.index); });
   }
 
   uint32_t traceBorder(uint32_t first, uint32_t count) override {
@@ -67,11 +132,11 @@ class CpuDevice final : public Device {
     border_hits_.assign(total, kNoTriangle);
     is_discontinuity_.assign(total, 0);
     rays_ += launch(
-        total, [&](uint32_t index) { return borderRayOf(index); },
-        [&](uint32_t index, const Ray& ray, const Hit& hit, SetRef set) {
-          border_hits_[index] = hit.triangle;
-          is_discontinuity_[index] = isDiscontinuity(ray, hit, params_) ? 1 : 0;
-          insertHit(set, hit.triangle, index + 1);
+        total, [&] { return borderRays(); },
+        [&](const BatchRay& ray, const Hit& hit, SetRef set) {
+          border_hits_[ray.index - 1] = hit.triangle;
+          is_discontinuity_[ray.index - 1] = isDiscontinuity(ray.ray, hit, params_) ? 1 : 0;
+          insertHit(set, hit.triangle, ray.index);
         });
     discontinuities_.clear();
     for (uint32_t index = 0; index < total; ++index) {
@@ -83,10 +148,8 @@ class CpuDevice final : public Device {
   void traceReverse(uint32_t first, uint32_t count) override {
     reverse_first_ = first;
     rays_ += launch(
-        uint64_t(count) * reverseRayCount(params_), [&](uint32_t index) { return reverseRayOf(index); },
-        [&](uint32_t index, const Ray&, const Hit& hit, SetRef set) {
-          insertHit(set, hit.triangle, index + 1);
-        });
+        uint64_t(count) * reverseRayCount(params_), [&] { return reverseRays(); },
+        [&](const BatchRay& ray, const Hit& hit, SetRef set) { insertHit(set, hit.triangle, ray.index); });
   }
 
   uint32_t collect(uint32_t stage) override {
@@ -112,17 +175,16 @@ class CpuDevice final : public Device {
     for (const uint32_t triangle : triangles) {
       while (claimSlot(set_.ref(), triangle) == kSlotEmpty) set_.grow(2);
       set_.ref().winner[findSlot(set_.ref(), triangle)] = kSlotOld;
-      entries_.push_back(entryOf(triangle, Ray{vec4(0), vec4(0)}, kStageContained));
+      entries_.push_back(entryOf(triangle, noRay(), kStageContained));
       while (set_.isHash() && entries_.size() * 2 > set_.capacity()) set_.grow(2);
     }
   }
 
   uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {
-    const Face face = faces_.at(segment.range.x);
     std::atomic<uint64_t> missing = 0;
     rays_ += launch(
-        slotCount(segment), [&](uint32_t slot) { return slotRay(segment, face, shifts, slot); },
-        [&](uint32_t, const Ray&, const Hit& hit, SetRef set) {
+        slotCount(segment), [&] { return slotRays(segment, shifts); },
+        [&](const BatchRay&, const Hit& hit, SetRef set) {
           if (hit.triangle != kNoTriangle && !isInSet(set, hit.triangle)) missing.fetch_add(1);
         });
     return missing;
@@ -167,26 +229,32 @@ class CpuDevice final : public Device {
     });
   }
 
-  /// Traces generate(index) for all indices, packet by packet, and hands those that have a direction with
-  /// their hits to take(index, ray, hit, set); again with a larger set if it was full (insertion is
-  /// idempotent). Returns the rays of one full run.
-  uint64_t launch(uint64_t count, auto&& generate, auto&& take) {
+  /// Traces the rays 0 .. count - 1 of generators that makeGenerator() returns (each is called with ascending
+  /// numbers by one thread), packet by packet, and hands those that have a direction with their hits to
+  /// take(ray, hit, set); again with a larger set if it was full (insertion is idempotent). Returns the rays
+  /// of one full run.
+  uint64_t launch(uint64_t count, auto&& makeGenerator, auto&& take) {
     for (;;) {
       std::atomic<uint64_t> total = 0;
       const SetRef set = set_.ref();
       parallel((count + kPacket - 1) / kPacket, [&](size_t begin, size_t end) {
+        auto generate = makeGenerator();
+        BatchRay batch[kPacket];
         Ray rays[kPacket];
         Hit hits[kPacket];
         uint64_t traced = 0;
         for (size_t packet = begin; packet < end; ++packet) {
           const auto first = static_cast<uint32_t>(packet * kPacket);
           const auto lanes = static_cast<uint32_t>(std::min<uint64_t>(kPacket, count - packet * kPacket));
-          for (uint32_t lane = 0; lane < lanes; ++lane) rays[lane] = generate(first + lane);
+          for (uint32_t lane = 0; lane < lanes; ++lane) {
+            batch[lane] = generate(first + lane);
+            rays[lane] = batch[lane].ray;
+          }
           tracer_.tracePacket(rays, hits, static_cast<int>(lanes));
           for (uint32_t lane = 0; lane < lanes; ++lane) {
-            if (maxAbs3(xyz3(rays[lane].direction)) == 0.0f) continue;
+            if (!hasDirection(rays[lane])) continue;
             ++traced;
-            take(first + lane, rays[lane], hits[lane], set);
+            take(batch[lane], hits[lane], set);
           }
         }
         total.fetch_add(traced, std::memory_order_relaxed);
@@ -198,45 +266,14 @@ class CpuDevice final : public Device {
 
   vec3 corner(uint32_t triangle, int i) const { return scene_.positions[scene_.triangles[triangle][i]]; }
 
-  /// Border ray `index` of the last traceBorder.
-  Ray borderRayOf(uint32_t index) const {
-    const uint32_t per_entry = borderRayCount(params_);
-    const uvec4 entry = entries_[border_first_ + index / per_entry].origin_triangle;
-    const vec3 origin(uintBitsToFloat(entry.x), uintBitsToFloat(entry.y), uintBitsToFloat(entry.z));
-    return borderRay(corner(entry.w, 0), corner(entry.w, 1), corner(entry.w, 2), index % per_entry, origin,
-                     params_);
-  }
-
-  /// Reverse ray `index` of the last traceReverse; without direction where its start point is excluded.
-  Ray reverseRayOf(uint32_t index) const {
-    const uint32_t per_item = reverseRayCount(params_);
-    const uint32_t item = reverse_first_ + index / per_item, k = index % per_item;
-    const uint32_t border_index = discontinuities_[item];
-    const Ray border = borderRayOf(border_index);
-    const vec3 target = add3(xyz3(border.origin), xyz3(border.direction));
-    const Ray none{vec4(0), vec4(0)};
-    uint32_t mask = 0;
-    for (size_t f = 0; f < faces_.size(); ++f) mask |= (faceLooksAt(faces_[f], target) ? 1u : 0u) << f;
-    if (mask == 0) return none;
-    const uint64_t number = items_before_ + item;
-    const Face& face = faces_[reverseFace(mask, item, k)];
-    const Ray ray = reverseRay(reverseOrigin(face, number, k, params_), target);
-    const uint32_t occluder = border_hits_[border_index];
-    if (occluder != kNoTriangle &&
-        segmentMeetsTriangle(ray, corner(occluder, 0), corner(occluder, 1), corner(occluder, 2))) {
-      return none;
-    }
-    return ray;
-  }
-
   /// The ray with this index (1 ..) in the batch that is being collected.
   Ray rayOfBatch(uint32_t stage, uint32_t index) const {
-    if (stage == kStageBorder) return borderRayOf(index - 1);
-    if (stage == kStageReverse) return reverseRayOf(index - 1);
+    if (stage == kStageBorder) return borderRays()(index - 1).ray;
+    if (stage == kStageReverse) return reverseRays()(index - 1).ray;
     for (const RandomSegment& segment : segments_) {
       const uint32_t offset = index - segment.batch.x;
       if (offset < segment.range.w) {
-        return randomRay(segmentFirst(segment) + offset, faces_[segment.range.x], params_.shifts);
+        return randomRay(segmentFirst(segment), offset, faces_[segment.range.x], params_.shifts);
       }
     }
     throw Error("internal error: a winner's ray is in no segment of its batch");

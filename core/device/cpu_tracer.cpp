@@ -1,7 +1,10 @@
 #include "core/device/cpu_tracer.h"
 
+#include <cmath>
+
 #include "core/shared/box.h"
 #include "core/shared/triangle.h"
+#include "core/shared/vector.h"
 
 namespace sightline {
 namespace {
@@ -70,6 +73,8 @@ CpuTracer::CpuTracer(std::vector<TriangleRecord> triangles, const Bvh& bvh)
 Hit CpuTracer::trace(const Ray& ray) const {
   Hit best{INFINITY, kNoTriangle};
   if (ray.direction.x == 0 && ray.direction.y == 0 && ray.direction.z == 0) return best;
+  // A ray with a NaN or an infinity in it would sort its boxes into no order; it hits nothing.
+  if (!std::isfinite(dot3(xyz3(ray.origin), vec3(1)) + dot3(xyz3(ray.direction), vec3(1)))) return best;
   const BoxRay box_ray = boxRay(ray, scene_reach_);
   const ShearedRay sheared = shearRay(ray);
   const PlaneOffsets rows = planeOffsets(box_ray);

@@ -17,8 +17,8 @@
 // normals cancels.
 #ifndef SL_BORDER_H
 #define SL_BORDER_H
+#include "core/shared/ray.h"
 #include "core/shared/stage_params.h"
-#include "core/shared/vector.h"
 SL_NAMESPACE_BEGIN
 
 /// Rays to one border polygon: 3 n_ABSEdge + 9.
@@ -81,35 +81,57 @@ SL_FUNC vec3 borderVertex(vec3 p, vec3 next, vec3 previous, uint which, vec3 ori
   return add3(p, scale3(direction, borderDistance(p, origin, params)));
 }
 
-/// Point k (0 .. borderRayCount - 1) of the border polygon of triangle p0 p1 p2 seen from origin.
-SL_FUNC vec3 borderPoint(vec3 p0, vec3 p1, vec3 p2, uint k, vec3 origin, StageParams params) {
-  uint per_edge = params.counts.x + 3u;
-  uint edge = k / per_edge;
-  uint place = k - edge * per_edge;  // 0: bisector, 1: first end, 2 .. n+1: between, n+2: second end
-  vec3 a = edge == 0u ? p0 : (edge == 1u ? p1 : p2);
-  vec3 b = edge == 0u ? p1 : (edge == 1u ? p2 : p0);
-  vec3 c = edge == 0u ? p2 : (edge == 1u ? p0 : p1);
-  if (place < 2u) return borderVertex(a, b, c, place, origin, params);
-  vec3 end = borderVertex(b, c, a, 2u, origin, params);
-  if (place == params.counts.x + 2u) return end;
+/// One side of the border polygon: all that its samples have in common.
+SL_STRUCT(BorderEdge) {
+  vec4 bisector;  ///< vertex outside the edge's first corner
+  vec4 start;     ///< ends of the long edge
+  vec4 end;
+};
+
+/// Side 0, 1 or 2 of the border polygon of triangle p0 p1 p2 seen from origin.
+SL_FUNC BorderEdge borderEdge(vec3 p0, vec3 p1, vec3 p2, uint side, vec3 origin, StageParams params) {
+  vec3 a = side == 0u ? p0 : (side == 1u ? p1 : p2);
+  vec3 b = side == 0u ? p1 : (side == 1u ? p2 : p0);
+  vec3 c = side == 0u ? p2 : (side == 1u ? p0 : p1);
+  vec3 bisector = borderVertex(a, b, c, 0u, origin, params);
   vec3 start = borderVertex(a, b, c, 1u, origin, params);
-  float t = slFloat(place - 1u) / slFloat(params.counts.x + 1u);
-  return add3(scale3(start, 1.0f - t), scale3(end, t));
+  vec3 end = borderVertex(b, c, a, 2u, origin, params);
+  BorderEdge edge;
+  edge.bisector = vec4(bisector.x, bisector.y, bisector.z, 0.0f);
+  edge.start = vec4(start.x, start.y, start.z, 0.0f);
+  edge.end = vec4(end.x, end.y, end.z, 0.0f);
+  return edge;
 }
 
-/// Ray k to the border polygon: t = 1 at the border point (x_target).
-SL_FUNC Ray borderRay(vec3 p0, vec3 p1, vec3 p2, uint k, vec3 origin, StageParams params) {
-  vec3 direction = sub3(borderPoint(p0, p1, p2, k, origin, params), origin);
-  Ray ray;
-  ray.origin = vec4(origin.x, origin.y, origin.z, 0.0f);
-  ray.direction = vec4(direction.x, direction.y, direction.z, 0.0f);
-  return ray;
+/// Samples of one side: its bisector vertex, both ends and n_ABSEdge between.
+SL_FUNC uint borderSideCount(StageParams params) {
+  return params.counts.x + 3u;
+}
+
+/// The side that point k (0 .. borderRayCount - 1) of the polygon lies on.
+SL_FUNC uint borderSide(uint k, StageParams params) {
+  return k / borderSideCount(params);
+}
+
+/// Point k of the polygon; edge: of its side.
+SL_FUNC vec3 borderPoint(BorderEdge edge, uint k, StageParams params) {
+  uint place = k % borderSideCount(params);
+  if (place == 0u) return xyz3(edge.bisector);
+  if (place == 1u) return xyz3(edge.start);
+  if (place == params.counts.x + 2u) return xyz3(edge.end);
+  float t = slFloat(place - 1u) / slFloat(params.counts.x + 1u);
+  return add3(scale3(xyz3(edge.start), 1.0f - t), scale3(xyz3(edge.end), t));
+}
+
+/// The ray from origin to point k: t = 1 there (x_target).
+SL_FUNC Ray borderRay(BorderEdge edge, uint k, vec3 origin, StageParams params) {
+  return rayTo(origin, borderPoint(edge, k, params));
 }
 
 /// Whether a border ray meets a discontinuity (equation 5.7): it hits nothing, or something nearer than its
 /// target by more than delta_RS.
 SL_FUNC bool isDiscontinuity(Ray ray, Hit hit, StageParams params) {
-  if (hit.triangle == kNoTriangle) return maxAbs3(xyz3(ray.direction)) > 0.0f;
+  if (hit.triangle == kNoTriangle) return hasDirection(ray);
   float distance = length3(xyz3(ray.direction));
   return (1.0f - hit.t) * distance > params.distances.z * distance + params.distances.w;
 }

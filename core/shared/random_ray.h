@@ -12,51 +12,16 @@
 #ifndef SL_RANDOM_RAY_H
 #define SL_RANDOM_RAY_H
 #include "core/shared/halton.h"
+#include "core/shared/ray.h"
 #include "core/shared/stage_params.h"
-#include "core/shared/vector.h"
 SL_NAMESPACE_BEGIN
 
-/// sin(x * pi / 2) for x in [0, 1], error below 3e-7: Taylor polynomial of degree 11. The runtimes' own
-/// sines differ from each other.
-SL_FUNC float sinQuarter(float x) {
-  float x2 = x * x;
-  float p = -3.5988432e-6f;
-  p = p * x2 + 1.6044118e-4f;
-  p = p * x2 + -4.6817541e-3f;
-  p = p * x2 + 7.9692626e-2f;
-  p = p * x2 + -6.4596410e-1f;
-  p = p * x2 + 1.5707963f;
-  return min(p * x, 1.0f);
-}
-
-/// Unit direction in the face's frame (x: axis_u, y: axis_v, z: normal, z > 0) for fixed-point numbers of 24
-/// bits (equation 5.3 with z = 1 - h).
-SL_FUNC vec3 hemisphereDirection(uint azimuth24, uint height24) {
-  uint quadrant = azimuth24 >> 22;
-  float within = slFloat(azimuth24 & 0x3fffffu) * 2.384185791015625e-7f;  // exact, [0, 1)
-  float s = sinQuarter(within);
-  float c = sinQuarter(1.0f - within);
-  float height = haltonFraction(height24);
-  float z = 1.0f - height;
-  float r = sqrt(height * (1.0f + z));
-  float x = (quadrant & 1u) == 0u ? c : s;
-  float y = (quadrant & 1u) == 0u ? s : c;
-  x = (quadrant == 1u || quadrant == 2u) ? -x : x;
-  y = quadrant >= 2u ? -y : y;
-  return vec3(r * x, r * y, z);
-}
-
-/// The ray of point `index` of the sequence. shifts: StageParams::shifts.
-SL_FUNC Ray randomRay(uint64 index, Face face, uvec4 shifts) {
-  vec3 framed = hemisphereDirection(halton2(index, shifts.x), halton3(index, shifts.y));
-  float u = haltonFraction(halton5(index, shifts.z));
-  float v = haltonFraction(halton7(index, shifts.w));
-  vec3 origin = add3(add3(xyz3(face.corner), scale3(xyz3(face.edge_u), u)), scale3(xyz3(face.edge_v), v));
-  vec3 direction = add3(add3(scale3(xyz3(face.axis_u), framed.x), scale3(xyz3(face.axis_v), framed.y)),
-                        scale3(xyz3(face.normal), framed.z));
+/// The ray of point first + offset of the sequence. shifts: StageParams::shifts.
+SL_FUNC Ray randomRay(uint64 first, uint offset, Face face, uvec4 shifts) {
+  RandomRays rays = randomRays(first, offset, face, shifts);
   Ray ray;
-  ray.origin = vec4(origin.x, origin.y, origin.z, 0.0f);
-  ray.direction = vec4(direction.x, direction.y, direction.z, 0.0f);
+  ray.origin = vec4(rays.origin_x, rays.origin_y, rays.origin_z, 0.0f);
+  ray.direction = vec4(rays.direction_x, rays.direction_y, rays.direction_z, 0.0f);
   return ray;
 }
 
@@ -71,10 +36,10 @@ SL_FUNC uint power(uint base, uint exponent) {
   return result;
 }
 
-/// Offset in the segment of the first ray of a stratum; its others follow `strata` apart.
+/// Offset in the segment of the first ray of a stratum.
 SL_FUNC uint stratumOffset(RandomSegment segment, uint stratum) {
   uint strata = segment.batch.y;
-  uint size2 = power(2u, segment.digits.x);
+  uint size2 = 1u << segment.digits.x;
   uint size5 = power(5u, segment.digits.z);
   uint size7 = power(7u, segment.digits.w);
 
@@ -90,28 +55,53 @@ SL_FUNC uint stratumOffset(RandomSegment segment, uint stratum) {
   cell2 = (cell3 & 1u) == 0u ? cell2 : size2 - 1u - cell2;
 
   // Cell -> residues -> residue modulo M.
-  uint64 residue = slUint64(reverseDigits2(cell2, segment.digits.x)) * segment.coefficients.x;
-  residue += slUint64(reverseDigits3(cell3, segment.digits.y)) * segment.coefficients.y;
-  residue += slUint64(reverseDigits5(cell5, segment.digits.z)) * segment.coefficients.z;
-  residue += slUint64(reverseDigits7(cell7, segment.digits.w)) * segment.coefficients.w;
-  uint rest_of_strata = slUint(residue % strata);
-  return rest_of_strata >= segment.batch.w ? rest_of_strata - segment.batch.w
-                                           : rest_of_strata + (strata - segment.batch.w);
+  uint64 sum = slUint64(reverseBits(cell2, segment.digits.x)) * segment.coefficients.x;
+  sum += slUint64(reverseDigits(cell3, 3u, segment.digits.y)) * segment.coefficients.y;
+  sum += slUint64(reverseDigits(cell5, 5u, segment.digits.z)) * segment.coefficients.z;
+  sum += slUint64(reverseDigits(cell7, 7u, segment.digits.w)) * segment.coefficients.w;
+  uint residue = slUint(sum % strata);
+  return residue >= segment.batch.w ? residue - segment.batch.w : residue + (strata - segment.batch.w);
 }
 
-/// Offset in the segment (0 .. count - 1) of the ray that slot s traces, or kNoTriangle for the few slots
-/// that have none (where the number of strata does not divide count).
-SL_FUNC uint slotOffset(RandomSegment segment, uint slot) {
+/// A place in the walk over a segment's slots; slots one after the other share their stratum's offset.
+SL_STRUCT(SlotWalk) {
+  uint stratum;  ///< kNoTriangle before the first slot
+  uint offset;   ///< stratumOffset of it
+};
+
+SL_FUNC SlotWalk startSlotWalk() {
+  SlotWalk walk;
+  walk.stratum = kNoTriangle;
+  walk.offset = 0u;
+  return walk;
+}
+
+/// The walk at `slot`.
+SL_FUNC SlotWalk walkToSlot(SlotWalk walk, RandomSegment segment, uint slot) {
   uint stratum = slot / segment.batch.z;
-  uint turn = slot - stratum * segment.batch.z;
-  uint64 whole = slUint64(turn) * segment.batch.y + stratumOffset(segment, stratum);
-  return whole < segment.range.w ? slUint(whole) : kNoTriangle;
+  if (stratum != walk.stratum) {
+    walk.stratum = stratum;
+    walk.offset = stratumOffset(segment, stratum);
+  }
+  return walk;
 }
 
-/// The ray of slot s, or one without direction where the slot has none.
-SL_FUNC Ray slotRay(RandomSegment segment, Face face, uvec4 shifts, uint slot) {
-  uint offset = slotOffset(segment, slot);
-  Ray ray = randomRay(segmentFirst(segment) + slUint64(offset), face, shifts);
+/// Offset in the segment (0 .. count - 1) of the ray that the slot traces, or kNoTriangle for the few slots
+/// that have none (where the number of strata does not divide count). walk: at the slot.
+SL_FUNC uint walkOffset(SlotWalk walk, RandomSegment segment, uint slot) {
+  uint turn = slot - walk.stratum * segment.batch.z;
+  uint64 offset = slUint64(turn) * segment.batch.y + walk.offset;
+  return offset < segment.range.w ? slUint(offset) : kNoTriangle;
+}
+
+/// The same for a single slot.
+SL_FUNC uint slotOffset(RandomSegment segment, uint slot) {
+  return walkOffset(walkToSlot(startSlotWalk(), segment, slot), segment, slot);
+}
+
+/// The ray at an offset of slotOffset; one without direction for kNoTriangle.
+SL_FUNC Ray offsetRay(RandomSegment segment, Face face, uvec4 shifts, uint offset) {
+  Ray ray = randomRay(segmentFirst(segment), offset, face, shifts);
   if (offset == kNoTriangle) ray.direction = vec4(0.0f, 0.0f, 0.0f, 0.0f);
   return ray;
 }

@@ -7,7 +7,9 @@
 // one discontinuity to the next.
 #ifndef SL_REVERSE_H
 #define SL_REVERSE_H
-#include "core/shared/random_ray.h"
+#include "core/shared/halton.h"
+#include "core/shared/ray.h"
+#include "core/shared/stage_params.h"
 #include "core/shared/triangle.h"
 SL_NAMESPACE_BEGIN
 
@@ -18,20 +20,6 @@ SL_FUNC uint reverseRayCount(StageParams params) {
 
 SL_FUNC bool faceLooksAt(Face face, vec3 target) {
   return dot3(sub3(target, xyz3(face.corner)), xyz3(face.normal)) > 0.0f;
-}
-
-/// The face for ray k of discontinuity `item`: the faces whose bit is set in mask (not 0) take turns.
-SL_FUNC uint reverseFace(uint mask, uint item, uint k) {
-  uint count = 0u;
-  for (uint face = 0u; face < 6u; ++face) count += (mask >> face) & 1u;
-  uint skip = (k + item) % count;
-  uint found = 0u;
-  for (uint face = 0u; face < 6u; ++face) {
-    bool set = ((mask >> face) & 1u) != 0u;
-    if (set && skip == 0u) found = face;
-    if (set) skip -= 1u;  // wraps past the chosen one: never 0 again for six faces
-  }
-  return found;
 }
 
 /// Where ray k starts on the face: along the four edges, corners included, then inside by Halton points.
@@ -55,20 +43,48 @@ SL_FUNC vec3 reverseOrigin(Face face, uint64 item, uint k, StageParams params) {
   return add3(add3(xyz3(face.corner), scale3(xyz3(face.edge_u), u)), scale3(xyz3(face.edge_v), v));
 }
 
-/// The ray from origin to target (t = 1 there).
-SL_FUNC Ray reverseRay(vec3 origin, vec3 target) {
-  vec3 direction = sub3(target, origin);
-  Ray ray;
-  ray.origin = vec4(origin.x, origin.y, origin.z, 0.0f);
-  ray.direction = vec4(direction.x, direction.y, direction.z, 0.0f);
-  return ray;
+/// A discontinuity: all that its reverse rays have in common.
+SL_STRUCT(ReverseItem) {
+  vec4 target;  ///< xyz
+  vec4 a;       ///< corners of the occluder
+  vec4 b;
+  vec4 c;
+  uvec4 number;  ///< x, y: low and high half of its running number in the cell; z: bits of the faces that
+                 ///< look at the target; w: 1 if there is an occluder
+};
+
+SL_FUNC uint64 reverseItemNumber(ReverseItem item) {
+  return (slUint64(item.number.y) << 32) | slUint64(item.number.x);
 }
 
-/// Whether the segment of a reverse ray, from its origin to its target, meets the occluder.
-SL_FUNC bool segmentMeetsTriangle(Ray ray, vec3 v0, vec3 v1, vec3 v2) {
-  if (maxAbs3(xyz3(ray.direction)) == 0.0f) return false;
-  float t = intersectTriangle(shearRay(ray), v0, v1, v2);
+/// The face for reverse ray k of the item: those that look at the target take turns. At least one must.
+SL_FUNC uint reverseFace(ReverseItem item, uint k) {
+  uint mask = item.number.z;
+  uint count = 0u;
+  for (uint face = 0u; face < 6u; ++face) count += (mask >> face) & 1u;
+  uint skip = (k + item.number.x) % count;
+  uint found = 0u;
+  for (uint face = 0u; face < 6u; ++face) {
+    bool looks = ((mask >> face) & 1u) != 0u;
+    if (looks && skip == 0u) found = face;
+    if (looks) skip -= 1u;  // wraps past the chosen one: never 0 again for six faces
+  }
+  return found;
+}
+
+/// Whether the segment of the ray, from its origin to t = 1, meets the item's occluder.
+SL_FUNC bool segmentMeetsOccluder(Ray ray, ReverseItem item) {
+  if (item.number.w == 0u || !hasDirection(ray)) return false;
+  float t = intersectTriangle(shearRay(ray), xyz3(item.a), xyz3(item.b), xyz3(item.c));
   return t > 0.0f && t < 1.0f;
+}
+
+/// Reverse ray k of the item, from `face` = reverseFace(item, k); without direction where its start point
+/// sees nothing but the occluder. The item's mask of faces must not be 0.
+SL_FUNC Ray reverseRay(ReverseItem item, Face face, uint k, StageParams params) {
+  Ray ray = rayTo(reverseOrigin(face, reverseItemNumber(item), k, params), xyz3(item.target));
+  if (segmentMeetsOccluder(ray, item)) ray.direction = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+  return ray;
 }
 
 SL_NAMESPACE_END

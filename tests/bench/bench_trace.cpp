@@ -64,7 +64,7 @@ struct Workload {
   std::vector<Ray> border;
 };
 
-constexpr uvec4 kShifts(2654435769u, 1640531527u, 805459861u, 1431655765u);
+constexpr uvec4 kShifts(2654435769u, 40531527u, 205459861u, 31655765u);
 
 float area(const Face& face) {
   return glm::length(vec3(face.edge_u)) * glm::length(vec3(face.edge_v));
@@ -81,7 +81,7 @@ void addRandomRays(Workload& work, const ViewCell& cell, uint32_t count) {
     const size_t first = work.random.size();
     work.random.resize(first + share);
     tbb::parallel_for(0u, share,
-                      [&](uint32_t k) { work.random[first + k] = randomRay(index + k, faces[i], kShifts); });
+                      [&](uint32_t k) { work.random[first + k] = randomRay(index, k, faces[i], kShifts); });
     index += share;
   }
 }
@@ -103,7 +103,8 @@ void addBorderRays(Workload& work, const CpuTracer& tracer, size_t first, size_t
     const glm::uvec3 v = work.scene.triangles[id];
     const auto& p = work.scene.positions;
     for (uint32_t k = 0; k < borderRayCount(params); ++k) {
-      work.border.push_back(borderRay(p[v.x], p[v.y], p[v.z], k, origin, params));
+      work.border.push_back(borderRay(
+          borderEdge(p[v.x], p[v.y], p[v.z], borderSide(k, params), origin, params), k, origin, params));
     }
   }
 }
@@ -144,7 +145,7 @@ Contestant cpuContestant(const Workload& work) {
         const uint32_t offset = slotOffset(run.segment, uint32_t(s));
         if (offset == kNoTriangle) continue;
         offsets.push_back(offset);
-        rays.push_back(randomRay(segmentFirst(run.segment) + offset, run.face, kShifts));
+        rays.push_back(randomRay(segmentFirst(run.segment), offset, run.face, kShifts));
       }
       std::vector<Hit> hits(rays.size());
       tracer->tracePacket(rays.data(), hits.data(), int(rays.size()));

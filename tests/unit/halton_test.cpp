@@ -34,9 +34,9 @@ TEST(Halton, AgreesWithExactRadicalInverses) {
       ASSERT_LE(value, exact) << "index " << index << " shift " << shift;
       ASSERT_GE(value + 1, exact) << "index " << index << " shift " << shift;
     };
-    expectNear(halton3(index, shift3), reference(index, 3, 20, kHaltonPeriod3, shift3));
-    expectNear(halton5(index, shift5), reference(index, 5, 13, kHaltonPeriod5, shift5));
-    expectNear(halton7(index, shift7), reference(index, 7, 11, kHaltonPeriod7, shift7));
+    expectNear(halton3(index, shift3), reference(index, 3, 16, kHaltonPeriod3, shift3));
+    expectNear(halton5(index, shift5), reference(index, 5, 12, kHaltonPeriod5, shift5));
+    expectNear(halton7(index, shift7), reference(index, 7, 9, kHaltonPeriod7, shift7));
   }
 }
 
@@ -45,13 +45,6 @@ TEST(Halton, FractionsStayBelowOne) {
   EXPECT_LT(haltonFraction(halton5(kHaltonPeriod5 - 1, 0)), 1.0f);
   EXPECT_LT(haltonFraction(halton7(kHaltonPeriod7 - 1, 0)), 1.0f);
   EXPECT_LT(haltonFraction(halton2(0xffffffffu, 0)), 1.0f);
-}
-
-TEST(Halton, DivisionBySevenIsExactForEveryDigit) {
-  for (uint64_t value = 0; value < kHaltonPeriod7; value += 997) {
-    const auto v = static_cast<uint32_t>(value);
-    ASSERT_EQ(slMulHigh(v, 0x92492493u) >> 2, v / 7) << v;
-  }
 }
 
 /// The reference implementation refreshed only a quarter of its points between iterations.
