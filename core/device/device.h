@@ -70,6 +70,7 @@ class Device {
   virtual uint32_t collect(uint32_t stage) = 0;
 
   /// Puts triangles into the set and list without rays (those that the cell contains), in the given order.
+  /// None may be in the set yet, nor twice among them.
   virtual void insertContained(std::span<const uint32_t> triangles) = 0;
 
   /// Traces random rays with other shifts than the cell's, without inserting; returns how many hit a triangle
@@ -86,6 +87,10 @@ class Device {
 
 /// Devices that this machine has, the unusable ones with their reason.
 std::vector<DeviceInfo> listDevices();
+
+/// Throws Error as makeDevice would if `name` selects no device that can run here: at once, before the work
+/// that a tree takes.
+void requireDevice(const std::string& name);
 
 /// Makes the device that `name` selects and uploads the scene: "cpu", "opencl", "opencl:INDEX" or
 /// "opencl:PART-OF-NAME". Throws Error that lists what there is.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "core/error.h"
@@ -11,20 +12,13 @@
 #include "core/shared/border.h"
 #include "core/shared/halton.h"
 #include "core/shared/reverse.h"
+#include "core/splitmix.h"
 
 namespace sightline {
 namespace {
 
 /// Rays of one random launch at most: a second or so on a slow device, for progress and interruption.
 constexpr uint32_t kRandomLaunchRays = 1u << 22;
-
-/// splitmix64 (Steele, Lea and Flood 2014): a bijection that mixes all bits.
-uint64_t splitmix(uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
 
 /// Random shifts of the four Halton bases, each below its period. use: 0 sampling, 1 validation.
 uvec4 haltonShifts(uint64_t seed, uint32_t cell_index, uint32_t use) {
@@ -95,11 +89,8 @@ class CellBake {
     device_.beginCell(faces_, stage_params_);
   }
 
-  /// Everything up to the stop rule; fills stats but for validation.
-  void run(std::span<const uint32_t> contained) {
-    device_.insertContained(contained);
-    stats_.contained_triangles = contained.size();
-    pvs_size_ = explored_ = static_cast<uint32_t>(contained.size());
+  /// Everything up to the stop rule.
+  void run() {
     uint32_t quiet = 0;
     for (bool more = true; more;) {
       ++stats_.iterations;
@@ -108,6 +99,22 @@ class CellBake {
       quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
       if (quiet >= params_.quiet_iterations) more = false;
     }
+  }
+
+  /// Adds those of the triangles (ascending) that no ray has found: after run, for what rays find is explored
+  /// too.
+  void addContained(std::span<const uint32_t> contained) {
+    if (contained.empty()) return;
+    std::vector<uint32_t> found;
+    for (const PvsEntry& entry : device_.readPvs()) found.push_back(entry.origin_triangle.w);
+    std::sort(found.begin(), found.end());
+    std::vector<uint32_t> unseen;
+    std::set_difference(contained.begin(), contained.end(), found.begin(), found.end(),
+                        std::back_inserter(unseen));
+    device_.insertContained(unseen);
+    stats_.contained_triangles = unseen.size();
+    pvs_size_ += static_cast<uint32_t>(unseen.size());
+    explored_ = pvs_size_;
   }
 
   /// Fresh random rays of other shifts; counts those that hit something outside the set.
@@ -176,10 +183,13 @@ class CellBake {
       const auto start = Clock::now();
       const uint32_t count = std::min(entries_per_batch, pvs_size_ - explored_);
       const uint32_t discontinuities = device_.traceBorder(explored_, count);
+      in_work_ = count;
+      reverse_left_ = uint64_t(discontinuities) * reverseRayCount(stage_params_);
       const bool more = finishLaunch(kStageBorder, stats_.border);
       close(kStageBorder, stats_.border, start);
       if (!more || !reverse(discontinuities)) return false;
       explored_ += count;
+      in_work_ = 0;
     }
     return true;
   }
@@ -192,6 +202,7 @@ class CellBake {
       const auto start = Clock::now();
       const uint32_t count = std::min(items_per_batch, discontinuities - item);
       device_.traceReverse(item, count);
+      reverse_left_ -= uint64_t(count) * per_item;
       const bool more = finishLaunch(kStageReverse, stats_.reverse);
       close(kStageReverse, stats_.reverse, start);
       if (!more) return false;
@@ -233,12 +244,19 @@ class CellBake {
     p.new_triangles = iteration_new_;
     p.queued = pvs_size_ - explored_;
     p.seconds = seconds();
-    const double per_entry = explored_ == 0 ? double(borderRayCount(stage_params_))
-                                            : double(stats_.border.rays + stats_.reverse.rays) / explored_;
-    const double due = double(random_left_) + double(p.queued) * per_entry +
-                       double(params_.validation_rays - stats_.validation_rays);
-    p.seconds_left = p.rays == 0 ? 0 : due * p.seconds / double(p.rays);
+    p.seconds_left = p.rays == 0 ? 0 : raysDue() * p.seconds / double(p.rays);
     callback_(p);
+  }
+
+  /// Estimate of the rays until the cell is done, if the queue grows no further and this iteration is the
+  /// last.
+  double raysDue() const {
+    const uint32_t taken_up = explored_ + in_work_;
+    const double per_entry =
+        taken_up == 0 ? double(borderRayCount(stage_params_))
+                      : double(stats_.border.rays + stats_.reverse.rays + reverse_left_) / taken_up;
+    return double(random_left_) + double(reverse_left_) + double(pvs_size_ - taken_up) * per_entry +
+           double(params_.validation_rays - stats_.validation_rays);
   }
 
   Device& device_;
@@ -255,7 +273,9 @@ class CellBake {
   uint64_t rays_ = 0;
   uint32_t random_left_ = 0;  ///< random rays of this iteration still to trace
   uint32_t pvs_size_ = 0;
-  uint32_t explored_ = 0;  ///< entries of the list that need no more exploration
+  uint32_t explored_ = 0;      ///< entries of the list that need no more exploration
+  uint32_t in_work_ = 0;       ///< entries after them whose border rays have been traced
+  uint64_t reverse_left_ = 0;  ///< reverse rays of these still to trace
   uint32_t iteration_new_ = 0;
   bool validating_ = false;
 };
@@ -287,7 +307,8 @@ CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint3
   CellPvs pvs;
   pvs.cell = cell;
   CellBake bake(device, params, cellFaces(cell), cell_index, progress, stop);
-  bake.run(containedTriangles(scene, cell));
+  bake.run();
+  bake.addContained(containedTriangles(scene, cell));
   bake.validate();
   fillSet(device.readPvs(), pvs);
   pvs.stats = bake.stats();

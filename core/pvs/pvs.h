@@ -44,7 +44,7 @@ enum class StopReason : uint32_t { kConverged = 0, kRayLimit = 1, kTimeLimit = 2
 /// What a cell's bake did.
 struct CellStats {
   StageStats random, border, reverse;
-  uint64_t contained_triangles = 0;  ///< in the set because they meet the cell itself
+  uint64_t contained_triangles = 0;  ///< in the set only because they meet the cell itself
   uint32_t iterations = 0;
   StopReason stop = StopReason::kConverged;
   uint64_t validation_rays = 0;  ///< fresh random rays

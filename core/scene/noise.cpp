@@ -12,7 +12,7 @@ namespace {
 float latticeValue(int64_t x, int64_t y, int64_t z, uint64_t seed) {
   const uint64_t key = seed + uint64_t(x) * 0x9e3779b97f4a7c15ull + uint64_t(y) * 0xc2b2ae3d27d4eb4full +
                        uint64_t(z) * 0x165667b19e3779f9ull;
-  return float(GeneratorRandom::mix(key) >> 40) * 0x1p-23f - 1.0f;
+  return float(mixBits(key) >> 40) * 0x1p-23f - 1.0f;
 }
 
 float blend(float t) {

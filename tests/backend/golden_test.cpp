@@ -132,6 +132,19 @@ TEST_P(Golden, ContainedTriangleIsInTheSet) {
   EXPECT_EQ(pvs.witnesses[0].stage, kStageContained);
 }
 
+/// A triangle that meets the cell and that rays find is explored like any other: its neighbours, of which few
+/// random rays hit one, are found along its border.
+TEST_P(Golden, ExplorationAlsoStartsFromTrianglesInTheCell) {
+  SceneOfBoxes boxes;
+  boxes.addRectangle({-50, 0, -50}, {100, 0, 0}, {0, 0, 100});  // a floor through the cell
+  for (int i = 0; i < 50; ++i) boxes.addRectangle({float(i) - 25, 0, 50}, {0.5f, 0, 0}, {0, 0.001f, 0});
+  BakeParams params = quickParams();
+  params.n_rand = 1000;
+  params.n_abs_edge = 400;
+  const CellPvs pvs = bakeOn(GetParam(), boxes.finish(), {"cell", {0, 0.4, 0}, {1, 1, 1}}, params);
+  EXPECT_GT(pvs.triangles.size(), 20u);
+}
+
 /// Border and reverse sampling find what random rays cannot: with one random ray, the whole room is explored.
 TEST_P(Golden, ExplorationAloneFindsTheNeighbours) {
   SceneOfBoxes boxes;
