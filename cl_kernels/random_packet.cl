@@ -31,19 +31,13 @@ static inline RayPacket randomPacket(uint64 first, uint8 offset, Face face, uint
 
 /// slotOffset of the slots first .. first + SL_PACKET - 1; kNoTriangle past the last slot.
 static inline void slotOffsets(RandomSegment segment, uint first, uint* offsets) {
-  uint slots = segment.batch.y * segment.batch.z;
-  uint stratum = first / segment.batch.z;
-  uint turn = first - stratum * segment.batch.z;
-  uint start = first < slots ? stratumOffset(segment, stratum) : 0u;
+  const uint slots = segment.batch.y * segment.batch.z;
+  SlotWalk walk = startSlotWalk();
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
-    ulong whole = (ulong)turn * segment.batch.y + start;
-    offsets[lane] = first + lane < slots && whole < segment.range.w ? (uint)whole : kNoTriangle;
-    ++turn;
-    if (turn == segment.batch.z && first + lane + 1 < slots) {
-      turn = 0;
-      ++stratum;
-      start = stratumOffset(segment, stratum);
-    }
+    offsets[lane] = kNoTriangle;
+    if (first + lane >= slots) continue;
+    walk = walkToSlot(walk, segment, first + lane);
+    offsets[lane] = walkOffset(walk, segment, first + lane);
   }
 }
 

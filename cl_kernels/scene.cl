@@ -1,5 +1,6 @@
 // The scene as kernels read it: the 2-wide tree and the triangles in leaf order.
 #include "core/shared/box.h"
+#include "core/shared/ray.h"
 #include "core/shared/triangle.h"
 
 /// BvhNode2 of bvh/bvh.h.
@@ -50,10 +51,6 @@ static inline SceneRef packScene(__global const BvhNode2* nodes, __global const 
 
 /// Inner nodes on a path at most (kMaxDepth of bvh/bvh.h): each leaves one sibling on the stack.
 #define SL_STACK_SIZE 96
-
-static inline bool isInactive(Ray ray) {
-  return ray.direction.x == 0.0f && ray.direction.y == 0.0f && ray.direction.z == 0.0f;
-}
 
 static inline Hit missHit(void) {
   Hit hit;

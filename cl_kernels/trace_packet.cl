@@ -135,12 +135,7 @@ static void tracePacket(SceneRef scene, Packet* p) {
         child = links[1];
         count = links[3];
       } else {
-        do {
-          if (size == 0) return;
-          --size;
-        } while (laneBits(stack_near[size] <= p->t) == 0);
-        child = stack_child[size];
-        count = stack_count[size];
+        break;
       }
     }
     for (uint i = child; i < child + count; ++i) intersectRecord8(&scene.triangles[i], p);

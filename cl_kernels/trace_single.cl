@@ -19,7 +19,7 @@ static inline void intersectRecord(__global const TriangleRecord* record, Sheare
 
 static Hit traceRay(SceneRef scene, Ray ray) {
   Hit best = missHit();
-  if (isInactive(ray)) return best;
+  if (!hasDirection(ray)) return best;
   BoxRay box_ray = boxRay(ray, scene.reach);
   ShearedRay sheared = shearRay(ray);
   uint2 stack[SL_STACK_SIZE];  // x: bits of the distance, y: node

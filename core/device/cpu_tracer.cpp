@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "core/shared/box.h"
+#include "core/shared/ray.h"
 #include "core/shared/triangle.h"
 #include "core/shared/vector.h"
 
@@ -72,7 +73,7 @@ CpuTracer::CpuTracer(std::vector<TriangleRecord> triangles, const Bvh& bvh)
 
 Hit CpuTracer::trace(const Ray& ray) const {
   Hit best{INFINITY, kNoTriangle};
-  if (ray.direction.x == 0 && ray.direction.y == 0 && ray.direction.z == 0) return best;
+  if (!hasDirection(ray)) return best;
   // A ray with a NaN or an infinity in it would sort its boxes into no order; it hits nothing.
   if (!std::isfinite(dot3(xyz3(ray.origin), vec3(1)) + dot3(xyz3(ray.direction), vec3(1)))) return best;
   const BoxRay box_ray = boxRay(ray, scene_reach_);

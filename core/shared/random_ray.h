@@ -65,22 +65,22 @@ SL_FUNC uint stratumOffset(RandomSegment segment, uint stratum) {
 
 /// A place in the walk over a segment's slots; slots one after the other share their stratum's offset.
 SL_STRUCT(SlotWalk) {
-  uint stratum;  ///< kNoTriangle before the first slot
-  uint offset;   ///< stratumOffset of it
+  uint first;   ///< slot of the stratum; kNoTriangle before the first
+  uint offset;  ///< stratumOffset
 };
 
 SL_FUNC SlotWalk startSlotWalk() {
   SlotWalk walk;
-  walk.stratum = kNoTriangle;
+  walk.first = kNoTriangle;
   walk.offset = 0u;
   return walk;
 }
 
 /// The walk at `slot`.
 SL_FUNC SlotWalk walkToSlot(SlotWalk walk, RandomSegment segment, uint slot) {
-  uint stratum = slot / segment.batch.z;
-  if (stratum != walk.stratum) {
-    walk.stratum = stratum;
+  if (slot < walk.first || slot - walk.first >= segment.batch.z) {
+    uint stratum = slot / segment.batch.z;
+    walk.first = stratum * segment.batch.z;
     walk.offset = stratumOffset(segment, stratum);
   }
   return walk;
@@ -89,8 +89,7 @@ SL_FUNC SlotWalk walkToSlot(SlotWalk walk, RandomSegment segment, uint slot) {
 /// Offset in the segment (0 .. count - 1) of the ray that the slot traces, or kNoTriangle for the few slots
 /// that have none (where the number of strata does not divide count). walk: at the slot.
 SL_FUNC uint walkOffset(SlotWalk walk, RandomSegment segment, uint slot) {
-  uint turn = slot - walk.stratum * segment.batch.z;
-  uint64 offset = slUint64(turn) * segment.batch.y + walk.offset;
+  uint64 offset = slUint64(slot - walk.first) * segment.batch.y + walk.offset;
   return offset < segment.range.w ? slUint(offset) : kNoTriangle;
 }
 
