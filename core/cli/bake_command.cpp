@@ -21,21 +21,6 @@ void say(const std::string& line) {
   std::fflush(stdout);
 }
 
-/// The default device must not be replaced in silence: say at once what to do.
-void requireOpenCl(const std::string& device) {
-  if (device != "opencl") return;
-  std::string reasons;
-  for (const DeviceInfo& info : listDevices()) {
-    if (info.id.rfind("opencl", 0) != 0) continue;
-    if (info.unusable.empty()) return;
-    reasons += fmt::format(" ({}: {})", info.name, info.unusable);
-  }
-  throw Error(fmt::format(
-      "no OpenCL device can run here{}; install pocl-opencl-icd or a driver, or take --device cpu (PoCL also "
-      "needs a cache folder that it can write: POCL_CACHE_DIR, else ~/.cache)",
-      reasons));
-}
-
 /// The inputs, as the head of the file that is to be made.
 PvsFile inputsOf(const BakeOptions& options, const Scene& scene) {
   PvsFile inputs;
@@ -76,7 +61,7 @@ struct Tracer {
 
 /// Fills `tracer` in place: the device refers to its tree.
 void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, BakeReport& report) {
-  requireOpenCl(options.device);
+  requireDevice(options.device);
   BvhConfig config;
   config.spatial_splits = options.spatial_splits;
   config.threads = options.device_options.threads;

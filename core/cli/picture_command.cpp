@@ -39,6 +39,7 @@ void draw(const PictureCommand& command) {
   const CellPvs& cell = chooseCell(pvs, command.cell, command.pvs);
   const Scene scene = loadScene(command.scene, {.repair = command.repair});
   requireScene(pvs, scene, command.pvs);
+  requireDevice(command.device);
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   const std::unique_ptr<Device> device = makeDevice(command.device, scene, bvh);
   const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {

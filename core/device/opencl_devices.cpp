@@ -28,6 +28,9 @@ std::string whyUnusable(cl_device_id device) {
   if (!clDeviceValue<cl_bool>(device, CL_DEVICE_AVAILABLE)) return "the device is not available";
   if (!clDeviceValue<cl_bool>(device, CL_DEVICE_COMPILER_AVAILABLE)) return "its driver has no compiler";
   if (!clDeviceValue<cl_bool>(device, CL_DEVICE_ENDIAN_LITTLE)) return "it is big-endian";
+  if (clDeviceValue<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG) == 0) {
+    return "it has no double precision, which close calls of the intersection test take";
+  }
   const auto config = clDeviceValue<cl_device_fp_config>(device, CL_DEVICE_SINGLE_FP_CONFIG);
   if (!(config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)) {
     return "it does not divide correctly rounded (CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT), so that its results "
@@ -76,8 +79,9 @@ std::string lowerCase(std::string text) {
 /// What there is, for the end of an error message.
 std::string inventory(const std::vector<OpenClDevice>& devices) {
   if (devices.empty()) {
-    return "no OpenCL device found: install a driver (Debian: pocl-opencl-icd runs on any processor) or use "
-           "the device cpu";
+    return "no OpenCL device found: install a driver (Debian: pocl-opencl-icd runs on any processor; it "
+           "needs a "
+           "cache folder that it can write: POCL_CACHE_DIR, else ~/.cache), or take --device cpu";
   }
   std::string text = "there is";
   for (const OpenClDevice& device : devices) {
@@ -147,6 +151,10 @@ OpenClDevice selectOpenClDevice(const std::string& selector) {
                             device->info.unusable));
   }
   return *device;
+}
+
+void requireOpenClDevice(const std::string& selector) {
+  selectOpenClDevice(selector);
 }
 
 std::vector<DeviceInfo> listOpenClDevices() {

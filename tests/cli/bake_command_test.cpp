@@ -41,12 +41,13 @@ class Workplace {
   std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
   const std::filesystem::path& path() const { return folder_.path(); }
 
-  /// Arguments of a bake to `out`, quick and on the processor.
-  std::string bake(const std::string& out, const std::string& more = "") const {
+  /// Arguments of a quick bake to `out`.
+  std::string bake(const std::string& out, const std::string& more = "",
+                   const std::string& device = "cpu") const {
     return fmt::format(
-        "bake {} --cells {} -o {} --device cpu --n-rand 20000 --n-abs-edge 4 --n-rs-edge 4 --n-rs-area 4 "
+        "bake {} --cells {} -o {} --device {} --n-rand 20000 --n-abs-edge 4 --n-rs-edge 4 --n-rs-area 4 "
         "--validation-rays 20000 {}",
-        *this / "blocks.obj", *this / "cells.json", *this / out, more);
+        *this / "blocks.obj", *this / "cells.json", *this / out, device, more);
   }
 
  private:
@@ -92,9 +93,10 @@ class Running {
   pid_t pid_;
 };
 
-/// The file without what differs between two runs: the times.
+/// The file without what may differ between two runs: the device and the times.
 PvsFile timeless(const std::string& file) {
   PvsFile pvs = loadPvs(file);
+  pvs.device.clear();
   for (CellPvs& cell : pvs.cells) {
     for (StageStats* stage : {&cell.stats.random, &cell.stats.border, &cell.stats.reverse})
       stage->seconds = 0;
@@ -104,7 +106,7 @@ PvsFile timeless(const std::string& file) {
   return pvs;
 }
 
-/// Both files hold the same bytes but for the times.
+/// Both files hold the same bytes but for device and times.
 void expectSameBake(const Workplace& place, const std::string& a, const std::string& b) {
   savePvs(timeless(a), place / "a.timeless");
   savePvs(timeless(b), place / "b.timeless");
@@ -213,6 +215,35 @@ TEST(BakeCommand, CtrlCAndTermKeepWhatIsFinished) {
   }
 }
 
+/// The first signal waits for the launch in work; whoever cannot wait sends another.
+TEST(BakeCommand, ASecondCtrlCEndsItAtOnceAndLosesNoFinishedCell) {
+  const Workplace place(4);
+  ASSERT_EQ(runProgram(place.bake("whole.pvs")).exit_code, 0);
+  Running bake(place.bake("x.pvs"), place / "log");
+  waitForCells(place / "x.pvs.part", 1);
+  bake.send(SIGSTOP);  // so that both signals come before it can end in order
+  bake.send(SIGINT);
+  bake.send(SIGCONT);
+  bake.send(SIGINT);
+  const int result = bake.wait();
+  EXPECT_TRUE(result == 130 || result == -SIGINT) << result;
+  ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);
+  expectSameBake(place, place / "x.pvs", place / "whole.pvs");
+}
+
+TEST(BakeCommand, SameOnAnyNumberOfPoclThreads) {
+  const Workplace place(2);
+  ASSERT_EQ(runProgram(place.bake("cpu.pvs", "--witnesses")).exit_code, 0);
+  for (const char* threads : {"1", "2", "7"}) {
+    ASSERT_EQ(::setenv("POCL_MAX_PTHREAD_COUNT", threads, 1), 0);
+    const std::string out = fmt::format("opencl-{}.pvs", threads);
+    const ProgramRun run = runProgram(place.bake(out, "--witnesses", "opencl"));
+    ::unsetenv("POCL_MAX_PTHREAD_COUNT");
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+    expectSameBake(place, place / out, place / "cpu.pvs");
+  }
+}
+
 TEST(BakeCommand, ReportIsComplete) {
   const Workplace place(2);
   const ProgramRun run = runProgram(place.bake("x.pvs", "--set hash --report " + (place / "r.json")));
@@ -300,6 +331,14 @@ TEST(BakeCommand, WithoutOpenClItSaysHowAndDoesNotFallBack) {
   EXPECT_FALSE(std::filesystem::exists(place / "x.pvs.part"));
   EXPECT_EQ(devices.exit_code, 0);
   EXPECT_TRUE(contains(devices, "none found")) << devices.output;
+}
+
+TEST(BakeCommand, ADeviceThatIsNotThereIsFoundBeforeTheTreeIsBuilt) {
+  const Workplace place(1);
+  const ProgramRun run = runProgram(place.bake("x.pvs", "", "opencl:nosuchdevice"));
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  EXPECT_TRUE(contains(run, "opencl:nosuchdevice")) << run.output;
+  EXPECT_FALSE(contains(run, "tree: built")) << run.output;
 }
 
 TEST(BakeCommand, AClosedPipeDoesNotEndIt) {
