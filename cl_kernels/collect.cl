@@ -1,5 +1,5 @@
-// From bits to lists, in ascending order whatever the scheduling: count the bits of each block of words, sum up
-// over the blocks, write. Used for the triangles that are new in a batch and for the discontinuities.
+// From bits to lists, in ascending order whatever the scheduling: count the bits of each block of words, sum
+// up over the blocks, write. Used for the triangles that are new in a batch and for the discontinuities.
 #include "cl_kernels/sampling_state.cl"
 
 /// Words of 32 bits that one work item counts and writes.
@@ -7,7 +7,8 @@
 /// Work items of the one group that sums up the blocks.
 #define SL_SUM_ITEMS 64
 
-__kernel void countBits(__global const uint* words, uint word_count, uint block_count, __global uint* block_counts) {
+__kernel void countBits(__global const uint* words, uint word_count, uint block_count,
+                        __global uint* block_counts) {
   const uint block = (uint)get_global_id(0);
   if (block >= block_count) return;
   const uint begin = block * SL_BLOCK_WORDS;
@@ -16,9 +17,10 @@ __kernel void countBits(__global const uint* words, uint word_count, uint block_
   block_counts[block] = count;
 }
 
-/// Exclusive sums of the block counts in place, by one work group; the total goes to block_counts[block_count].
+/// Exclusive sums of the block counts in place, by one work group; the total goes to
+/// block_counts[block_count].
 __kernel __attribute__((reqd_work_group_size(SL_SUM_ITEMS, 1, 1))) void sumBlocks(__global uint* block_counts,
-                                                                                 uint block_count) {
+                                                                                  uint block_count) {
   __local uint partial[SL_SUM_ITEMS];
   const uint item = (uint)get_local_id(0), items = SL_SUM_ITEMS;
   const uint share = (block_count + items - 1) / items;
@@ -44,14 +46,15 @@ __kernel void writeIndices(__global uint* words, uint word_count, uint block_cou
   if (block >= block_count) return;
   uint place = block_starts[block];
   for (uint i = block * SL_BLOCK_WORDS; i < min((block + 1) * SL_BLOCK_WORDS, word_count); ++i) {
-    for (uint bits = words[i]; bits != 0; bits &= bits - 1) indices[place++] = i * 32 + (31 - clz(bits & -bits));
+    for (uint bits = words[i]; bits != 0; bits &= bits - 1)
+      indices[place++] = i * 32 + (31 - clz(bits & -bits));
     words[i] = 0;
   }
 }
 
 /// The ray with this index (1 ..) among a batch's random segments.
-static inline Ray segmentRayAt(__global const RandomSegment* segments, uint segment_count, __global const Face* faces,
-                               StageParams params, uint index) {
+static inline Ray segmentRayAt(__global const RandomSegment* segments, uint segment_count,
+                               __global const Face* faces, StageParams params, uint index) {
   for (uint s = 0; s < segment_count; ++s) {
     const RandomSegment segment = segments[s];
     const uint offset = index - segment.batch.x;
@@ -62,11 +65,12 @@ static inline Ray segmentRayAt(__global const RandomSegment* segments, uint segm
   return noRay();
 }
 
-/// Appends the new triangles of a batch, whose ids are in `triangles`, to the list from entry `end` on, each with
-/// the ray that won it, and marks their slots as old.
-__kernel void appendEntries(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global const Face* faces, StageParams params,
-                            __global PvsEntry* entries, uint end, __global const uint* triangles, uint count,
-                            uint stage, __global const RandomSegment* segments, uint segment_count, uint first_entry,
+/// Appends the new triangles of a batch, whose ids are in `triangles`, to the list from entry `end` on, each
+/// with the ray that won it, and marks their slots as old.
+__kernel void appendEntries(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global const Face* faces,
+                            StageParams params, __global PvsEntry* entries, uint end,
+                            __global const uint* triangles, uint count, uint stage,
+                            __global const RandomSegment* segments, uint segment_count, uint first_entry,
                             __global const uint* border_hits, __global const uint* discontinuities,
                             uint first_item, ulong items_before) {
   const SceneRef scene = SL_SCENE_PACK;
@@ -78,7 +82,8 @@ __kernel void appendEntries(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global
   const uint index = winner[slot];
   winner[slot] = kSlotOld;
   Ray ray;
-  const ReverseSource source = {{record_of, entries, first_entry}, border_hits, discontinuities, first_item, items_before};
+  const ReverseSource source = {
+      {record_of, entries, first_entry}, border_hits, discontinuities, first_item, items_before};
   if (stage == kStageRandom) {
     ray = segmentRayAt(segments, segment_count, faces, params, index);
   } else if (stage == kStageBorder) {
@@ -94,8 +99,8 @@ __kernel void appendEntries(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global
 }
 
 /// Puts triangles into the set and the list without a ray.
-__kernel void insertContained(SL_SET_ARGS, __global PvsEntry* entries, uint end, __global const uint* triangles,
-                              uint count) {
+__kernel void insertContained(SL_SET_ARGS, __global PvsEntry* entries, uint end,
+                              __global const uint* triangles, uint count) {
   const SetRef set = SL_SET_PACK;
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
@@ -112,7 +117,8 @@ __kernel void insertContained(SL_SET_ARGS, __global PvsEntry* entries, uint end,
 }
 
 /// Moves the contents of a hash set into a larger one.
-__kernel void rehash(__global const uint* old_keys, __global const uint* old_winner, uint old_capacity, SL_SET_ARGS) {
+__kernel void rehash(__global const uint* old_keys, __global const uint* old_winner, uint old_capacity,
+                     SL_SET_ARGS) {
   const SetRef set = SL_SET_PACK;
   const uint i = (uint)get_global_id(0);
   if (i >= old_capacity || old_keys[i] == kNoTriangle) return;

@@ -28,8 +28,12 @@ static inline uint laneBits(int8 mask) {
 }
 
 /// `min` and `max` of OpenCL take several instructions for their rules on NaN; these take one.
-static inline float8 least(float8 a, float8 b) { return a < b ? a : b; }
-static inline float8 most(float8 a, float8 b) { return a > b ? a : b; }
+static inline float8 least(float8 a, float8 b) {
+  return a < b ? a : b;
+}
+static inline float8 most(float8 a, float8 b) {
+  return a > b ? a : b;
+}
 
 #endif
 #endif

@@ -1,4 +1,5 @@
-// What the sampling stages read besides the scene: set, list of entries, faces; and the rays of a batch by index.
+// What the sampling stages read besides the scene: set, list of entries, faces; and the rays of a batch by
+// index.
 #ifndef SL_SAMPLING_STATE_CL
 #define SL_SAMPLING_STATE_CL
 #include "cl_kernels/trace.cl"
@@ -7,14 +8,16 @@
 #include "core/shared/reverse.h"
 #include "core/shared/set.h"
 
-#define SL_SET_ARGS                                                                       \
+#define SL_SET_ARGS                                                                            \
   volatile __global uint *keys, volatile __global uint *winner, volatile __global uint *fresh, \
       volatile __global uint *overflow, uint capacity
-#define SL_SET_PACK \
-  (SetRef) { keys, winner, fresh, overflow, capacity }
+#define SL_SET_PACK                         \
+  (SetRef) {                                \
+    keys, winner, fresh, overflow, capacity \
+  }
 
 /// Where each triangle's corners are: id -> index of one of its records in scene.triangles.
-#define SL_CORNER_ARGS __global const uint *record_of
+#define SL_CORNER_ARGS __global const uint* record_of
 
 typedef struct Corners {
   float3 a, b, c;
@@ -90,7 +93,7 @@ typedef struct ReverseSource {
   __global const uint* border_hits;      ///< a border ray: what it hit
   __global const uint* discontinuities;  ///< indices of border rays
   uint first;
-  ulong items_before;                    ///< discontinuities of the cell before this border launch
+  ulong items_before;  ///< discontinuities of the cell before this border launch
 } ReverseSource;
 
 /// Discontinuity `place` (0 ..) of the source.

@@ -35,7 +35,7 @@ typedef struct SceneRef {
 
 /// Parameters of a kernel that traces, and the SceneRef made of them. The host passes, in this order, the
 /// node buffer, the triangle buffer and the reach (core/device/opencl_scene.h).
-#define SL_SCENE_ARGS                                                                        \
+#define SL_SCENE_ARGS                                                                                     \
   __global const BvhNode2 *restrict scene_nodes, __global const TriangleRecord *restrict scene_triangles, \
       float scene_reach
 #define SL_SCENE_PACK packScene(scene_nodes, scene_triangles, scene_reach)

@@ -39,11 +39,12 @@ __kernel void countMissing(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* face
   countRays(ray_counters, traced);
 }
 
-/// Border rays 0 .. total - 1 of the entries from `first_entry`; notes what each hit and, a bit a ray, whether
-/// it met a discontinuity.
-__kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StageParams params, __global const PvsEntry* entries,
-                          uint first_entry, uint total, __global uint* border_hits,
-                          volatile __global uint* discontinuity_bits, volatile __global uint* ray_counters) {
+/// Border rays 0 .. total - 1 of the entries from `first_entry`; notes what each hit and, a bit a ray,
+/// whether it met a discontinuity.
+__kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StageParams params,
+                          __global const PvsEntry* entries, uint first_entry, uint total,
+                          __global uint* border_hits, volatile __global uint* discontinuity_bits,
+                          volatile __global uint* ray_counters) {
   const SceneRef scene = SL_SCENE_PACK;
   const SetRef set = SL_SET_PACK;
   const BorderSource source = {record_of, entries, first_entry};
@@ -67,20 +68,23 @@ __kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StageParam
 }
 
 /// Reverse rays 0 .. total - 1 of the discontinuities from `first_item`: one a lane.
-__kernel void traceReverse(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global const Face* faces, StageParams params,
-                           __global const PvsEntry* entries, uint first_entry, __global const uint* border_hits,
-                           __global const uint* discontinuities, uint first_item, ulong items_before, uint total,
+__kernel void traceReverse(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global const Face* faces,
+                           StageParams params, __global const PvsEntry* entries, uint first_entry,
+                           __global const uint* border_hits, __global const uint* discontinuities,
+                           uint first_item, ulong items_before, uint total,
                            volatile __global uint* ray_counters) {
   const SceneRef scene = SL_SCENE_PACK;
   const SetRef set = SL_SET_PACK;
-  const ReverseSource source = {{record_of, entries, first_entry}, border_hits, discontinuities, first_item, items_before};
+  const ReverseSource source = {
+      {record_of, entries, first_entry}, border_hits, discontinuities, first_item, items_before};
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   Ray rays[SL_PACKET];
   Hit hits[SL_PACKET];
   ReverseWalk walk = startReverseWalk();
   uint traced = 0;
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
-    rays[lane] = first + lane < total ? walkToReverseRay(&walk, scene, source, faces, params, first + lane) : noRay();
+    rays[lane] =
+        first + lane < total ? walkToReverseRay(&walk, scene, source, faces, params, first + lane) : noRay();
     traced += hasDirection(rays[lane]) ? 1 : 0;
   }
   if (traced == 0) return;

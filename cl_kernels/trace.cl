@@ -10,7 +10,8 @@ static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
 #endif
 
 /// Hits of any rays; a work item takes the rays SL_PACKET * i ...
-__kernel void traceRaysKernel(SL_SCENE_ARGS, __global const Ray* input_rays, __global Hit* output_hits, uint count) {
+__kernel void traceRaysKernel(SL_SCENE_ARGS, __global const Ray* input_rays, __global Hit* output_hits,
+                              uint count) {
   uint first = (uint)get_global_id(0) * SL_PACKET;
   Ray rays[SL_PACKET];
   Hit hits[SL_PACKET];

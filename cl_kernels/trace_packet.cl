@@ -106,14 +106,18 @@ static void tracePacket(SceneRef scene, Packet* p) {
       __global const float* last_x = node + ahead_x;
       __global const float* last_y = node + ahead_y;
       __global const float* last_z = node + ahead_z;
-      float8 near0 = most(most(slab(first_x[0], p->inverse_x, p->near_x), slab(first_y[0], p->inverse_y, p->near_y)),
-                          most(slab(first_z[0], p->inverse_z, p->near_z), (float8)0.0f));
-      float8 far0 = least(least(slab(last_x[0], p->inverse_x, p->far_x), slab(last_y[0], p->inverse_y, p->far_y)),
-                          least(slab(last_z[0], p->inverse_z, p->far_z), p->t));
-      float8 near1 = most(most(slab(first_x[2], p->inverse_x, p->near_x), slab(first_y[2], p->inverse_y, p->near_y)),
-                          most(slab(first_z[2], p->inverse_z, p->near_z), (float8)0.0f));
-      float8 far1 = least(least(slab(last_x[2], p->inverse_x, p->far_x), slab(last_y[2], p->inverse_y, p->far_y)),
-                          least(slab(last_z[2], p->inverse_z, p->far_z), p->t));
+      float8 near0 =
+          most(most(slab(first_x[0], p->inverse_x, p->near_x), slab(first_y[0], p->inverse_y, p->near_y)),
+               most(slab(first_z[0], p->inverse_z, p->near_z), (float8)0.0f));
+      float8 far0 =
+          least(least(slab(last_x[0], p->inverse_x, p->far_x), slab(last_y[0], p->inverse_y, p->far_y)),
+                least(slab(last_z[0], p->inverse_z, p->far_z), p->t));
+      float8 near1 =
+          most(most(slab(first_x[2], p->inverse_x, p->near_x), slab(first_y[2], p->inverse_y, p->near_y)),
+               most(slab(first_z[2], p->inverse_z, p->near_z), (float8)0.0f));
+      float8 far1 =
+          least(least(slab(last_x[2], p->inverse_x, p->far_x), slab(last_y[2], p->inverse_y, p->far_y)),
+                least(slab(last_z[2], p->inverse_z, p->far_z), p->t));
       uint meets0 = laneBits(near0 <= far0);
       uint meets1 = laneBits(near1 <= far1);
       if (meets0 != 0 && meets1 != 0) {
@@ -149,7 +153,9 @@ static void tracePacket(SceneRef scene, Packet* p) {
 }
 
 /// Bits of the lanes whose direction's sign or depth axis is that of lane `first`.
-static inline uint lanesLike(uint first, uint bits) { return (bits >> first & 1u) != 0 ? bits : ~bits; }
+static inline uint lanesLike(uint first, uint bits) {
+  return (bits >> first & 1u) != 0 ? bits : ~bits;
+}
 
 /// 1 / direction and the addends of boxRay (core/shared/box.h) along one axis.
 static inline float8 inverseSlope(float8 direction, float8 smallest) {
@@ -157,8 +163,9 @@ static inline float8 inverseSlope(float8 direction, float8 smallest) {
   return 1.0f / (fabs(direction) < smallest ? bounded : direction);
 }
 
-/// The nearest hits of all lanes; t of a miss is not a number to use. Lanes of one class (signs of the direction,
-/// axis of depth) go through the tree together; rays that were put side by side well are of one class.
+/// The nearest hits of all lanes; t of a miss is not a number to use. Lanes of one class (signs of the
+/// direction, axis of depth) go through the tree together; rays that were put side by side well are of one
+/// class.
 static HitPacket traceLanes(SceneRef scene, const RayPacket* rays) {
   float8 x = fabs(rays->direction[0]);
   float8 y = fabs(rays->direction[1]);
@@ -234,9 +241,9 @@ static inline void storeHits(HitPacket packet, Hit* hits) {
 
 static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
   RayPacket packet;
-#define SL_LANES(field, a)                                                                               \
-  (float8)(rays[0].field.a, rays[1].field.a, rays[2].field.a, rays[3].field.a, rays[4].field.a, rays[5].field.a, \
-           rays[6].field.a, rays[7].field.a)
+#define SL_LANES(field, a)                                                                      \
+  (float8)(rays[0].field.a, rays[1].field.a, rays[2].field.a, rays[3].field.a, rays[4].field.a, \
+           rays[5].field.a, rays[6].field.a, rays[7].field.a)
   packet.origin[0] = SL_LANES(origin, x);
   packet.origin[1] = SL_LANES(origin, y);
   packet.origin[2] = SL_LANES(origin, z);

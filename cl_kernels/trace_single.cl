@@ -27,21 +27,26 @@ static Hit traceRay(SceneRef scene, Ray ray) {
   uint node_index = 0;
   for (;;) {
     BvhNode2 node = scene.nodes[node_index];
-    float2 range0 = intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
-    float2 range1 = intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
+    float2 range0 =
+        intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
+    float2 range1 =
+        intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
     bool meets0 = range0.x <= min(range0.y, best.t);
     bool meets1 = range1.x <= min(range1.y, best.t);
     if (meets0 && node.count[0] > 0) {
-      for (uint i = 0; i < node.count[0]; ++i) intersectRecord(&scene.triangles[node.child[0] + i], sheared, &best);
+      for (uint i = 0; i < node.count[0]; ++i)
+        intersectRecord(&scene.triangles[node.child[0] + i], sheared, &best);
       meets0 = false;
     }
     if (meets1 && node.count[1] > 0) {
-      for (uint i = 0; i < node.count[1]; ++i) intersectRecord(&scene.triangles[node.child[1] + i], sheared, &best);
+      for (uint i = 0; i < node.count[1]; ++i)
+        intersectRecord(&scene.triangles[node.child[1] + i], sheared, &best);
       meets1 = false;
     }
     if (meets0 && meets1) {
       bool swap = range1.x < range0.x;
-      stack[size++] = swap ? (uint2)(as_uint(range0.x), node.child[0]) : (uint2)(as_uint(range1.x), node.child[1]);
+      stack[size++] =
+          swap ? (uint2)(as_uint(range0.x), node.child[0]) : (uint2)(as_uint(range1.x), node.child[1]);
       node_index = swap ? node.child[1] : node.child[0];
     } else if (meets0 || meets1) {
       node_index = meets0 ? node.child[0] : node.child[1];
