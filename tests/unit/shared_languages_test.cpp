@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/temporary_folder.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,10 +40,11 @@ class SharedHeader : public testing::TestWithParam<fs::path> {
  protected:
   /// A file in a scratch folder that includes the header after `before` and ends with `after`.
   fs::path source(const std::string& extension, const std::string& before, const std::string& after) {
-    const fs::path file = fs::path(testing::TempDir()) / (GetParam().stem().string() + extension);
+    const fs::path file = folder_ / (GetParam().stem().string() + extension);
     std::ofstream(file) << before << "#include \"core/shared/" << GetParam().string() << "\"\n" << after;
     return file;
   }
+  const sightline::TemporaryFolder folder_;
   const std::string include_ = std::string(" -I\"") + SL_SOURCE_DIR + "\" ";
 };
 
@@ -68,7 +71,7 @@ TEST_P(SharedHeader, CompilesAsOpenClC) {
 
 TEST_P(SharedHeader, CompilesAsValidGlsl) {
   ASSERT_EQ(runCommand("glslangValidator --version").first, 0) << "glslang-tools is needed";
-  const fs::path spirv = fs::path(testing::TempDir()) / (GetParam().stem().string() + ".spv");
+  const fs::path spirv = folder_ / "shader.spv";
   const std::string before =
       "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
       "layout(local_size_x = 64) in;\n"
