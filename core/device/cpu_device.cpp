@@ -16,9 +16,8 @@
 #include "core/device/host_set.h"
 #include "core/error.h"
 #include "core/gvs/random_segment.h"
-#include "core/shared/border.h"
+#include "core/gvs/stage_rays.h"
 #include "core/shared/random_ray.h"
-#include "core/shared/reverse.h"
 
 namespace sightline {
 namespace {
@@ -53,9 +52,9 @@ class CpuDevice final : public Device {
       const uint32_t side = borderSide(k, params_);
       if (place != entry_index * 3 + side) {
         place = entry_index * 3 + side;
-        const uvec4 entry = entries_[border_first_ + entry_index].origin_triangle;
-        origin = vec3(uintBitsToFloat(entry.x), uintBitsToFloat(entry.y), uintBitsToFloat(entry.z));
-        edge = borderEdge(corner(entry.w, 0), corner(entry.w, 1), corner(entry.w, 2), side, origin, params_);
+        const PvsEntry& entry = entries_[border_first_ + entry_index];
+        origin = entryOrigin(entry);
+        edge = borderEdgeOf(scene_, entry, side, params_);
       }
       return BatchRay{borderRay(edge, k, origin, params_), number + 1};
     };
@@ -70,8 +69,7 @@ class CpuDevice final : public Device {
         place = number / per_item;
         item = reverseItem(reverse_first_ + place);
       }
-      if (item.number.z == 0) return BatchRay{noRay(), number + 1};
-      return BatchRay{reverseRay(item, faces_[reverseFace(item, k)], k, params_), number + 1};
+      return BatchRay{reverseRayOf(item, faces_, k, params_), number + 1};
     };
   }
 
@@ -79,21 +77,7 @@ class CpuDevice final : public Device {
   ReverseItem reverseItem(uint32_t index) const {
     const uint32_t border_index = discontinuities_[index];
     const Ray border = borderRays()(border_index).ray;
-    const vec3 target = add3(xyz3(border.origin), xyz3(border.direction));
-    const uint64_t number = items_before_ + index;
-    uint32_t mask = 0;
-    for (size_t f = 0; f < faces_.size(); ++f) mask |= (faceLooksAt(faces_[f], target) ? 1u : 0u) << f;
-    ReverseItem item{};
-    item.target = vec4(target, 0);
-    const uint32_t occluder = border_hits_[border_index];
-    item.number = uvec4(static_cast<uint32_t>(number), static_cast<uint32_t>(number >> 32), mask,
-                        occluder != kNoTriangle ? 1 : 0);
-    if (occluder != kNoTriangle) {
-      item.a = vec4(corner(occluder, 0), 0);
-      item.b = vec4(corner(occluder, 1), 0);
-      item.c = vec4(corner(occluder, 2), 0);
-    }
-    return item;
+    return reverseItemOf(scene_, faces_, border, border_hits_[border_index], items_before_ + index);
   }
 
  public:
@@ -263,8 +247,6 @@ class CpuDevice final : public Device {
       set_.grow(4);
     }
   }
-
-  vec3 corner(uint32_t triangle, int i) const { return scene_.positions[scene_.triangles[triangle][i]]; }
 
   /// The ray with this index (1 ..) in the batch that is being collected.
   Ray rayOfBatch(uint32_t stage, uint32_t index) const {

@@ -1,0 +1,163 @@
+#include <fmt/core.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+
+#include "core/cli/commands.h"
+#include "core/cli/stop_signal.h"
+#include "core/crosscheck/crosscheck.h"
+#include "core/crosscheck/crosscheck_report.h"
+#include "core/crosscheck/place.h"
+#include "core/error.h"
+#include "core/report/progress.h"
+#include "core/report/text.h"
+#include "core/scene/file_io.h"
+
+namespace sightline {
+namespace {
+
+struct CrosscheckCommand {
+  std::filesystem::path scene, cells, report;
+  std::vector<std::string> devices, kinds;
+  double scale = 1, move = 0;
+  CrosscheckOptions options;
+  CrosscheckLimits limits;
+  bool repair = false, spatial_splits = false;
+};
+
+/// Rewrites one line on a terminal; elsewhere says one every few seconds.
+class Progress {
+ public:
+  void show(RayKind kind, uint64_t done, uint64_t due) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return;
+    next_ = now + std::chrono::milliseconds(terminal_ ? 100 : 5000);
+    const std::string line =
+        fmt::format("{:<10}  {} of {} rays", rayKindName(kind), shortCount(done), shortCount(due));
+    std::fputs((terminal_ ? "\r" + line + "\x1b[K" : line + "\n").c_str(), stdout);
+    std::fflush(stdout);
+  }
+  void end() {
+    if (terminal_) std::fputs("\r\x1b[K", stdout);
+  }
+
+ private:
+  bool terminal_ = terminalColumns(stdout) > 0;
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
+};
+
+void run(const CrosscheckCommand& command) {
+  if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
+  Scene scene = loadScene(command.scene, {.repair = command.repair});
+  std::vector<ViewCell> cells = loadCells(command.cells);
+  placeElsewhere(scene, cells, command.scale, command.move);
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles, {.spatial_splits = command.spatial_splits});
+  std::vector<std::unique_ptr<Device>> devices;
+  std::vector<Device*> pointers;
+  for (const std::string& name : command.devices) {
+    devices.push_back(makeDevice(name, scene, bvh));
+    pointers.push_back(devices.back().get());
+  }
+
+  CrosscheckHead head{SL_VERSION,      summarize(scene, command.scene.filename().string(), hashScene(scene)),
+                      command.scale,   command.move,
+                      command.options, {}};
+  for (const ViewCell& cell : cells) head.cells.push_back(cell.name);
+  fmt::print("{}: {} triangles, {} cells", command.scene.string(), scene.triangles.size(), cells.size());
+  for (const Device* device : pointers) fmt::print("; {}, {}", device->info().id, device->info().name);
+  fmt::print("\n");
+
+  StopSignal stop;
+  Progress progress;
+  const CrosscheckReport report = crosscheck(
+      scene, bvh, cells, pointers, command.options,
+      [&](RayKind kind, uint64_t done, uint64_t due) { progress.show(kind, done, due); }, stop.flag());
+  progress.end();
+  std::fputs(crosscheckTable(report).c_str(), stdout);
+  fmt::print("traced in {}, judged in {}\n", shortDuration(report.trace_seconds),
+             shortDuration(report.judge_seconds));
+  if (!command.report.empty()) {
+    OutputFile file(command.report);
+    file.write(jsonText(crosscheckJson(head, report)));
+    file.commit();
+  }
+  if (stop.exitCode() != 0) throw ExitCode{stop.exitCode()};
+  const auto past = pastLimits(report, command.limits);
+  for (const std::string& line : past) fmt::print("past the limit: {}\n", line);
+  if (!past.empty()) throw ExitCode{kExitPastLimit};
+}
+
+void declareLimits(CLI::App& command, CrosscheckLimits& limits) {
+  const auto count = [&](const char* name, auto& limit, const char* help) {
+    command.add_option(name, limit, help)
+        ->type_name("N")
+        ->group("Limits of any one device (else exit code 3)");
+  };
+  count("--max-wrong", limits.wrong, "answers that the judge finds wrong");
+  count("--max-missed", limits.missed, "hits that the judge finds lost");
+  count("--max-rounded", limits.rounded, "answers that are right up to rounding only");
+  count("--max-differences", limits.differences, "other triangles than the first device's");
+  count("--max-ulps", limits.ulps, "error of a distance, in units in the last place");
+}
+
+}  // namespace
+
+void addCrosscheckCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("crosscheck", "Trace the same rays on several devices; an exact judge decides");
+  const auto options = std::make_shared<CrosscheckCommand>();
+  command->add_option("scene", options->scene, ".obj, .gltf, .glb or .ply")->required()->type_name("SCENE");
+  command->add_option("--cells", options->cells, "view cells, JSON")->required()->type_name("CELLS.json");
+  command->add_option("--devices", options->devices, "devices to compare, the first is compared with")
+      ->required()
+      ->delimiter(',')
+      ->type_name("A,B,...");
+  command->add_option("--rays", options->options.rays, "rays of each kind, over all cells")
+      ->check(CLI::Range(uint64_t(1), uint64_t(1) << 40).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--kinds", options->kinds,
+                   "random, border, reverse, vertex, edge, along-edge, axis, grazing, plane, far-tiny "
+                   "(default: all)")
+      ->delimiter(',')
+      ->type_name("KIND,...");
+  command->add_option("--seed", options->options.seed, "seed of the rays")
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--check-every", options->options.check_every,
+                   "the judge looks at 1 in so many rays on which all agree (0: none)")
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--rounding", options->options.rounding.steps,
+                   "float steps beside an edge that count as rounding")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->type_name("STEPS")
+      ->capture_default_str();
+  command->add_option("--scale", options->scale, "multiply scene and cells by this first")
+      ->check(CLI::Range(1e-30, 1e30).description(""))
+      ->type_name("X")
+      ->capture_default_str();
+  command->add_option("--move", options->move, "then move them by this along x, y and z")
+      ->check(CLI::Range(-1e30, 1e30).description(""))
+      ->type_name("X")
+      ->capture_default_str();
+  command->add_option("--report", options->report, "write everything as JSON (docs/report.md)")
+      ->type_name("R.json");
+  command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
+  command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");
+  declareLimits(*command, options->limits);
+  command->callback([options] {
+    for (const std::string& name : options->kinds) {
+      const auto kind = rayKindOf(name);
+      if (!kind) throw CLI::ValidationError("--kinds", "no kind of ray \"" + name + "\"; see --help");
+      options->options.kinds.push_back(*kind);
+    }
+    run(*options);
+  });
+}
+
+}  // namespace sightline

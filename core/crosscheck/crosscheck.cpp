@@ -1,0 +1,211 @@
+#include "core/crosscheck/crosscheck.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "core/shared/ray.h"
+
+namespace sightline {
+namespace {
+
+/// Rays shown in full, for each device.
+constexpr size_t kWorstRays = 10;
+/// An aimed ray's answer beyond this t is looked at: its target lies at t = 1, up to rounding.
+constexpr float kSuspiciousDistance = 1 + 0x1p-12f;
+
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// What the judge says of one answer.
+struct Opinion {
+  Difference difference = Difference::kSame;
+  Ruling ruling;
+  double ulps = -1;  ///< error of t; < 0: none
+};
+
+/// The state of one ray of a batch.
+struct JudgedRay {
+  bool disputed = false, judged = false;
+  ExactHit exact;
+};
+
+/// Units in the last place of float by which t errs from the distance of its triangle's plane.
+double ulpsOff(const Judge& judge, const Ray& ray, const Hit& hit) {
+  if (hit.triangle >= judge.triangleCount()) return -1;
+  const auto plane = judge.planeDistance(judgeRay(ray), hit.triangle);
+  if (!plane || !(plane->low > 0)) return -1;
+  const double exact = plane->low + (plane->high - plane->low) / 2;
+  const int exponent = std::max(std::ilogb(exact), -126);
+  return std::fabs(double(hit.t) - exact) / std::ldexp(1.0, exponent - 23);
+}
+
+/// Keeps the worst answers of one device.
+class WorstRays {
+ public:
+  void consider(const WorstRay& ray) {
+    const auto worse = [](const WorstRay& a, const WorstRay& b) { return rank(a) > rank(b); };
+    const auto place = std::upper_bound(rays_.begin(), rays_.end(), ray, worse);
+    if (place == rays_.end() && rays_.size() == kWorstRays) return;
+    rays_.insert(place, ray);
+    if (rays_.size() > kWorstRays) rays_.pop_back();
+  }
+  bool wouldTake(Verdict verdict, double measure) const {
+    return rays_.size() < kWorstRays || std::tuple(verdict, measure) > rank(rays_.back());
+  }
+  const std::vector<WorstRay>& rays() const { return rays_; }
+
+ private:
+  static std::tuple<Verdict, double> rank(const WorstRay& ray) {
+    return {ray.rulings[ray.device].verdict, ray.measure};
+  }
+  std::vector<WorstRay> rays_;  ///< worst first; the earlier of equals
+};
+
+class Crosscheck {
+ public:
+  Crosscheck(const Scene& scene, const Bvh& bvh, std::span<Device* const> devices,
+             const CrosscheckOptions& options)
+      : judge_(scene, bvh), devices_(devices), options_(options), worst_(devices.size()) {
+    for (Device* device : devices) report_.devices.push_back(device->info());
+    std::vector<RayKind> kinds = options.kinds;
+    for (uint32_t k = 0; options.kinds.empty() && k < kRayKinds; ++k) kinds.push_back(RayKind(k));
+    for (const RayKind kind : kinds) {
+      report_.kinds.push_back({kind, 0, 0, 0, std::vector<DeviceTally>(devices.size())});
+    }
+  }
+
+  size_t kinds() const { return report_.kinds.size(); }
+  RayKind kind(size_t index) const { return report_.kinds[index].kind; }
+
+  /// Rays first .. first + count - 1 of a kind from a cell.
+  void batch(const RayMaker& maker, uint32_t cell, size_t kind_index, uint64_t first, size_t count) {
+    rays_.resize(count);
+    maker.make(kind(kind_index), first, rays_);
+    const auto start = std::chrono::steady_clock::now();
+    hits_.assign(devices_.size(), std::vector<Hit>(count));
+    for (size_t d = 0; d < devices_.size(); ++d) devices_[d]->traceRays(rays_, hits_[d]);
+    report_.trace_seconds += secondsSince(start);
+
+    const auto judge_start = std::chrono::steady_clock::now();
+    judged_.assign(count, {});
+    opinions_.assign(count * devices_.size(), {});
+    tbb::parallel_for(size_t(0), count, [&](size_t i) { form(i, kind(kind_index), first); });
+    for (size_t i = 0; i < count; ++i) book(i, cell, kind_index, first);
+    report_.judge_seconds += secondsSince(judge_start);
+  }
+
+  CrosscheckReport finish() {
+    for (const WorstRays& rays : worst_) {
+      report_.worst.insert(report_.worst.end(), rays.rays().begin(), rays.rays().end());
+    }
+    return std::move(report_);
+  }
+
+ private:
+  Opinion& opinion(size_t ray, size_t device) { return opinions_[ray * devices_.size() + device]; }
+
+  /// Forms the opinions on ray i.
+  void form(size_t i, RayKind kind, uint64_t first) {
+    const Ray& ray = rays_[i];
+    if (!hasDirection(ray)) return;
+    JudgedRay& judged = judged_[i];
+    const Hit& reference = hits_[0][i];
+    judged.judged = options_.check_every > 0 && (first + i) % options_.check_every == 0;
+    for (size_t d = 0; d < devices_.size(); ++d) {
+      const Hit& hit = hits_[d][i];
+      if (hit.triangle != reference.triangle) judged.disputed = judged.judged = true;
+      const bool past = hit.triangle == kNoTriangle || !(hit.t <= kSuspiciousDistance);
+      if (isAimed(kind) && past) judged.judged = true;
+      if (hit.triangle != kNoTriangle) opinion(i, d).ulps = ulpsOff(judge_, ray, hit);
+    }
+    if (!judged.judged) return;
+    judged.exact = judge_.nearest(judgeRay(ray));
+    for (size_t d = 0; d < devices_.size(); ++d) {
+      const Hit& hit = hits_[d][i];
+      opinion(i, d).difference = differenceOf(judge_, ray, reference, hit, options_.rounding);
+      opinion(i, d).ruling = rule(judge_, ray, hit, judged.exact, options_.rounding);
+    }
+  }
+
+  /// Adds ray i to the report.
+  void book(size_t i, uint32_t cell, size_t kind_index, uint64_t first) {
+    if (!hasDirection(rays_[i])) return;
+    KindReport& kind_report = report_.kinds[kind_index];
+    const JudgedRay& judged = judged_[i];
+    ++kind_report.rays;
+    kind_report.disputed += judged.disputed;
+    kind_report.checked += judged.judged && !judged.disputed;
+    for (size_t d = 0; d < devices_.size(); ++d) {
+      DeviceTally& tally = kind_report.devices[d];
+      const Opinion& its = opinion(i, d);
+      tally.hits += hits_[d][i].triangle != kNoTriangle;
+      ++tally.differences[size_t(its.difference)];
+      if (its.ulps >= 0) tally.ulps.add(its.ulps);
+      if (judged.judged) {
+        ++(judged.disputed ? tally.disputed : tally.checked)[size_t(its.ruling.verdict)];
+        if (its.ruling.verdict == Verdict::kRounded) {
+          tally.steps_beside = std::max(tally.steps_beside, its.ruling.steps_beside);
+        }
+      }
+      considerWorst(i, d, cell, kind(kind_index), first);
+    }
+  }
+
+  void considerWorst(size_t i, size_t d, uint32_t cell, RayKind kind, uint64_t first) {
+    const Opinion& its = opinion(i, d);
+    const bool right = its.ruling.verdict == Verdict::kRight;
+    const double measure = right ? its.ulps : its.ruling.steps_beside;
+    if (!worst_[d].wouldTake(its.ruling.verdict, measure)) return;
+    WorstRay ray{cell, kind, first + i, rays_[i], uint32_t(d), measure, {}, {}, judged_[i].exact};
+    if (!judged_[i].judged) ray.exact = judge_.nearest(judgeRay(rays_[i]));
+    for (size_t other = 0; other < devices_.size(); ++other) {
+      ray.hits.push_back(hits_[other][i]);
+      ray.rulings.push_back(opinion(i, other).ruling);
+    }
+    worst_[d].consider(ray);
+  }
+
+  Judge judge_;
+  std::span<Device* const> devices_;
+  const CrosscheckOptions& options_;
+  CrosscheckReport report_;
+  std::vector<WorstRays> worst_;  ///< by device
+  std::vector<Ray> rays_;
+  std::vector<std::vector<Hit>> hits_;  ///< by device
+  std::vector<JudgedRay> judged_;
+  std::vector<Opinion> opinions_;  ///< by ray, then device
+};
+
+}  // namespace
+
+CrosscheckReport crosscheck(const Scene& scene, const Bvh& bvh, std::span<const ViewCell> cells,
+                            std::span<Device* const> devices, const CrosscheckOptions& options,
+                            const CrosscheckProgress& progress, const std::atomic<bool>* stop) {
+  Crosscheck check(scene, bvh, devices, options);
+  const uint64_t due = options.rays * check.kinds();
+  uint64_t done = 0;
+  for (uint32_t c = 0; c < cells.size(); ++c) {
+    const uint64_t begin = options.rays * c / cells.size(), end = options.rays * (c + 1) / cells.size();
+    if (begin == end) continue;
+    const RayMaker maker(scene, cells[c], c, *devices[0], options.seed, end - begin);
+    for (size_t k = 0; k < check.kinds(); ++k) {
+      for (uint64_t first = 0; first < end - begin;) {
+        if (stop != nullptr && *stop) return check.finish();
+        const auto count = size_t(std::min<uint64_t>(options.batch_rays, end - begin - first));
+        check.batch(maker, c, k, first, count);
+        first += count;
+        done += count;
+        if (progress) progress(check.kind(k), done, due);
+      }
+    }
+  }
+  return check.finish();
+}
+
+}  // namespace sightline

@@ -1,0 +1,195 @@
+#include "core/crosscheck/crosscheck_report.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "core/report/text.h"
+
+namespace sightline {
+namespace {
+
+constexpr Verdict kAllVerdicts[] = {Verdict::kRight, Verdict::kRounded, Verdict::kMissed, Verdict::kWrong};
+/// Answers of each device that the table shows in full; the JSON has them all.
+constexpr size_t kShownRays = 3;
+
+Json verdictCounts(const std::array<uint64_t, kVerdicts>& counts) {
+  Json json;
+  for (const Verdict verdict : kAllVerdicts) json[verdictName(verdict)] = counts[size_t(verdict)];
+  return json;
+}
+
+Json differenceCounts(const std::array<uint64_t, kDifferences>& counts) {
+  Json json;
+  for (uint32_t i = 0; i < kDifferences; ++i) json[differenceName(Difference(i))] = counts[i];
+  return json;
+}
+
+Json toJson(const ErrorHistogram& ulps) {
+  return {{"count", ulps.count()},        {"p50", ulps.percentile(0.5)},    {"p90", ulps.percentile(0.9)},
+          {"p99", ulps.percentile(0.99)}, {"p999", ulps.percentile(0.999)}, {"max", ulps.max()}};
+}
+
+Json toJson(const KindReport& kind, const std::vector<DeviceInfo>& devices) {
+  Json json = {{"kind", rayKindName(kind.kind)},
+               {"rays", kind.rays},
+               {"disputed", kind.disputed},
+               {"checked", kind.checked},
+               {"devices", Json::array()}};
+  for (size_t d = 0; d < devices.size(); ++d) {
+    const DeviceTally& tally = kind.devices[d];
+    json["devices"].push_back({{"device", devices[d].id},
+                               {"hits", tally.hits},
+                               {"differences", differenceCounts(tally.differences)},
+                               {"disputed", verdictCounts(tally.disputed)},
+                               {"checked", verdictCounts(tally.checked)},
+                               {"rounded_steps_max", tally.steps_beside},
+                               {"distance_ulps", toJson(tally.ulps)}});
+  }
+  return json;
+}
+
+Json idOrNull(uint32_t triangle) {
+  return triangle == kNoTriangle ? Json(nullptr) : Json(triangle);
+}
+
+Json hexVector(const vec4& v) {
+  return {hexFloat(v.x), hexFloat(v.y), hexFloat(v.z)};
+}
+
+Json toJson(const WorstRay& ray, const std::vector<DeviceInfo>& devices) {
+  Json answers = Json::array();
+  for (size_t d = 0; d < devices.size(); ++d) {
+    answers.push_back(
+        {{"device", devices[d].id},
+         {"triangle", idOrNull(ray.hits[d].triangle)},
+         {"t", ray.hits[d].triangle == kNoTriangle ? Json(nullptr) : Json(hexFloat(ray.hits[d].t))},
+         {"verdict", verdictName(ray.rulings[d].verdict)},
+         {"steps_beside", ray.rulings[d].steps_beside}});
+  }
+  return {{"device", devices[ray.device].id},
+          {"measure", ray.measure},
+          {"kind", rayKindName(ray.kind)},
+          {"cell", ray.cell},
+          {"number", ray.number},
+          {"origin", hexVector(ray.ray.origin)},
+          {"direction", hexVector(ray.ray.direction)},
+          {"exact_triangles", ray.exact.triangles},
+          {"exact_t", ray.exact.missed() ? Json(nullptr) : Json(ray.exact.t.low)},
+          {"answers", answers}};
+}
+
+std::string answerText(const Hit& hit) {
+  if (hit.triangle == kNoTriangle) return "nothing";
+  return fmt::format("triangle {} at {}", hit.triangle, hexFloat(hit.t));
+}
+
+std::string exactText(const ExactHit& exact) {
+  if (exact.missed()) return "nothing";
+  return fmt::format(
+      "triangle {}{} at {:.9g}", exact.triangles.front(),
+      exact.triangles.size() > 1 ? fmt::format(" and {} more", exact.triangles.size() - 1) : "", exact.t.low);
+}
+
+std::string worstText(const WorstRay& ray, const std::vector<DeviceInfo>& devices) {
+  const vec4 o = ray.ray.origin, d = ray.ray.direction;
+  std::string text =
+      fmt::format("\n{}, {} ray {} of cell {}: {}\n", devices[ray.device].id, rayKindName(ray.kind),
+                  ray.number, ray.cell, verdictName(ray.rulings[ray.device].verdict));
+  text += fmt::format("  from {} {} {} along {} {} {}\n  exactly: {}\n", hexFloat(o.x), hexFloat(o.y),
+                      hexFloat(o.z), hexFloat(d.x), hexFloat(d.y), hexFloat(d.z), exactText(ray.exact));
+  for (size_t i = 0; i < devices.size(); ++i) {
+    text += fmt::format("  {}: {} ({})\n", devices[i].id, answerText(ray.hits[i]),
+                        verdictName(ray.rulings[i].verdict));
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string hexFloat(float value) {
+  if (value == 0) return std::signbit(value) ? "-0x0p+0" : "0x0p+0";
+  std::string text = fmt::format("{:a}", value);
+  if (text.find("0x") == std::string::npos) text.insert(text[0] == '-' ? 1 : 0, "0x");
+  return text;
+}
+
+std::vector<std::string> pastLimits(const CrosscheckReport& report, const CrosscheckLimits& limits) {
+  std::vector<std::string> lines;
+  for (size_t d = 0; d < report.devices.size(); ++d) {
+    uint64_t counts[kVerdicts] = {}, differences = 0;
+    double ulps = 0;
+    for (const KindReport& kind : report.kinds) {
+      const DeviceTally& tally = kind.devices[d];
+      for (const Verdict verdict : kAllVerdicts) counts[size_t(verdict)] += tally.verdicts(verdict);
+      for (uint32_t i = 1; i < kDifferences; ++i) differences += tally.differences[i];
+      ulps = std::max(ulps, tally.ulps.max());
+    }
+    const auto check = [&](const auto& limit, auto value, const char* what) {
+      if (!limit || value <= *limit) return;
+      lines.push_back(
+          fmt::format("{}: {} {}, at most {} allowed", report.devices[d].id, value, what, *limit));
+    };
+    check(limits.wrong, counts[size_t(Verdict::kWrong)], "wrong");
+    check(limits.missed, counts[size_t(Verdict::kMissed)], "missed");
+    check(limits.rounded, counts[size_t(Verdict::kRounded)], "rounded");
+    check(limits.differences, differences, "differences from the first device");
+    check(limits.ulps, ulps, "ulps off in distance");
+  }
+  return lines;
+}
+
+Json crosscheckJson(const CrosscheckHead& head, const CrosscheckReport& report) {
+  Json devices = Json::array(), kinds = Json::array(), worst = Json::array();
+  for (const DeviceInfo& device : report.devices) {
+    devices.push_back(
+        {{"id", device.id}, {"name", device.name}, {"driver", device.driver}, {"layout", device.layout}});
+  }
+  for (const KindReport& kind : report.kinds) kinds.push_back(toJson(kind, report.devices));
+  for (const WorstRay& ray : report.worst) worst.push_back(toJson(ray, report.devices));
+  return {
+      {"sightline", head.version},
+      {"scene",
+       {{"name", head.scene.name}, {"hash", hashText(head.scene.hash)}, {"triangles", head.scene.triangles}}},
+      {"scale", head.scale},
+      {"move", head.move},
+      {"cells", head.cells},
+      {"seed", head.options.seed},
+      {"rays", head.options.rays},
+      {"check_every", head.options.check_every},
+      {"rounding_steps", head.options.rounding.steps},
+      {"devices", devices},
+      {"kinds", kinds},
+      {"worst", worst},
+      {"trace_seconds", report.trace_seconds},
+      {"judge_seconds", report.judge_seconds}};
+}
+
+std::string crosscheckTable(const CrosscheckReport& report) {
+  size_t width = 6;
+  for (const DeviceInfo& device : report.devices) width = std::max(width, device.id.size());
+  std::string table = fmt::format(
+      "{:<10}  {:>9}  {:<{}}  {:>8} {:>8} {:>8} {:>8}  {:>8} {:>8} {:>8} {:>8} {:>8}  {:>7} {:>8} {:>8}\n",
+      "kind", "rays", "device", width, "tie", "edge", "one miss", "other", "judged", "right", "rounded",
+      "missed", "wrong", "ulps 50", "99 %", "max");
+  for (const KindReport& kind : report.kinds) {
+    for (size_t d = 0; d < report.devices.size(); ++d) {
+      const DeviceTally& t = kind.devices[d];
+      table += fmt::format("{:<10}  {:>9}  {:<{}}  ", d == 0 ? rayKindName(kind.kind) : "",
+                           d == 0 ? shortCount(kind.rays) : "", report.devices[d].id, width);
+      for (uint32_t i = 1; i < kDifferences; ++i) table += fmt::format("{:>8} ", t.differences[i]);
+      table += fmt::format(" {:>8} ", kind.disputed + kind.checked);
+      for (const Verdict verdict : kAllVerdicts) table += fmt::format("{:>8} ", t.verdicts(verdict));
+      table += fmt::format(" {:>7.2g} {:>8.3g} {:>8.3g}\n", t.ulps.percentile(0.5), t.ulps.percentile(0.99),
+                           t.ulps.max());
+    }
+  }
+  std::vector<size_t> shown(report.devices.size());
+  for (const WorstRay& ray : report.worst) {
+    if (ray.rulings[ray.device].verdict == Verdict::kRight || shown[ray.device]++ >= kShownRays) continue;
+    table += worstText(ray, report.devices);
+  }
+  return table;
+}
+
+}  // namespace sightline

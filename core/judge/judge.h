@@ -1,0 +1,48 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "bvh/bvh.h"
+#include "core/judge/candidates.h"
+#include "core/judge/judge_ray.h"
+#include "core/scene/scene.h"
+
+namespace sightline {
+
+/// What a ray meets first, without rounding.
+struct ExactHit {
+  std::vector<uint32_t> triangles;  ///< all that it meets at the smallest distance, ascending; empty: none
+  DoubleRange t;                    ///< holds the distance, in units of the direction
+
+  bool missed() const { return triangles.empty(); }
+  bool contains(uint32_t triangle) const;
+};
+
+/// Decides what rays meet first, on the float inputs as they are: hits are those of exact_contact.h (edges
+/// and corners count, t > 0, a ray in a triangle's plane passes it by). Double arithmetic with error bounds
+/// decides nearly all of it, CGAL's exact numbers the rest. Thread-safe after construction.
+class Judge {
+ public:
+  /// Both must outlive it.
+  Judge(const Scene& scene, const Bvh& bvh);
+
+  ExactHit nearest(const JudgeRay& ray) const;
+
+  /// Whether the ray meets the triangle at all.
+  bool meets(const JudgeRay& ray, uint32_t triangle) const;
+
+  /// Where the ray's line crosses the triangle's plane: a range of less than 2^-40 of it.
+  /// Nothing where they are parallel or the triangle has no area.
+  std::optional<DoubleRange> planeDistance(const JudgeRay& ray, uint32_t triangle) const;
+
+  /// The corners of a triangle.
+  JudgeTriangle corners(uint32_t triangle) const;
+  uint32_t triangleCount() const { return uint32_t(scene_.triangles.size()); }
+
+ private:
+  const Scene& scene_;
+  CandidateWalk candidates_;
+};
+
+}  // namespace sightline

@@ -1,0 +1,53 @@
+#pragma once
+// A device that answers wrongly in a chosen way: what a cross-check must find.
+#include <functional>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/device/cpu_device.h"
+
+namespace sightline::judge_test {
+
+/// The cpu device, but for the answers of traceRays that `change` changes. Its bakes are right.
+class WrongDevice final : public Device {
+ public:
+  /// Changes the answer to a ray; returns whether it did. Called by one thread.
+  using Change = std::function<bool(const Ray& ray, Hit& hit)>;
+
+  WrongDevice(const Scene& scene, const Bvh& bvh, Change change)
+      : device_(makeCpuDevice(scene, bvh, {})), change_(std::move(change)) {}
+
+  DeviceInfo info() const override {
+    DeviceInfo info = device_->info();
+    info.id = "wrong";
+    return info;
+  }
+  void beginCell(std::span<const Face> faces, const StageParams& params) override {
+    device_->beginCell(faces, params);
+  }
+  void traceRandom(const RandomSegment& segment) override { device_->traceRandom(segment); }
+  uint32_t traceBorder(uint32_t first, uint32_t count) override { return device_->traceBorder(first, count); }
+  void traceReverse(uint32_t first, uint32_t count) override { device_->traceReverse(first, count); }
+  uint32_t collect(uint32_t stage) override { return device_->collect(stage); }
+  void insertContained(std::span<const uint32_t> triangles) override { device_->insertContained(triangles); }
+  uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {
+    return device_->countMissing(segment, shifts);
+  }
+  DeviceCounters counters() override { return device_->counters(); }
+  std::vector<PvsEntry> readPvs() override { return device_->readPvs(); }
+  void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override {
+    device_->traceRays(rays, hits);
+    for (size_t i = 0; i < rays.size(); ++i) changed_ += change_(rays[i], hits[i]);
+  }
+
+  /// Answers changed so far.
+  uint64_t changed() const { return changed_; }
+
+ private:
+  std::unique_ptr<Device> device_;
+  Change change_;
+  uint64_t changed_ = 0;
+};
+
+}  // namespace sightline::judge_test
