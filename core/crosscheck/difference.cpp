@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "core/judge/seen_triangle.h"
+
 namespace sightline {
 namespace {
 
@@ -21,13 +23,11 @@ std::vector<glm::dvec3> sharedCorners(const JudgeTriangle& s, const JudgeTriangl
 
 /// Distance of the ray's line to the segment p q.
 double distanceToSegment(const JudgeRay& ray, const glm::dvec3& p, const glm::dvec3& q) {
-  const glm::dvec3 way = ray.direction / glm::length(ray.direction);
-  const auto beside = [&](const glm::dvec3& x) {
-    return x - ray.origin - way * glm::dot(way, x - ray.origin);
+  const RayFrame frame(ray.direction);
+  const auto seen = [&](const glm::dvec3& x) {
+    return glm::dvec2(glm::dot(x - ray.origin, frame.right), glm::dot(x - ray.origin, frame.up));
   };
-  const glm::dvec3 a = beside(p), ab = beside(q) - a;
-  const double length2 = glm::dot(ab, ab);
-  return glm::length(length2 == 0 ? a : a + ab * std::clamp(-glm::dot(a, ab) / length2, 0.0, 1.0));
+  return glm::length(nearestOfSegment(seen(p), seen(q)));
 }
 
 /// Whether the two are neighbours by something that the ray meets.
@@ -35,8 +35,8 @@ bool meetsWhatIsShared(const Judge& judge, const JudgeRay& ray, uint32_t a, uint
                        const RoundingLimit& limit) {
   const auto shared = sharedCorners(judge.corners(a), judge.corners(b));
   if (shared.empty() || shared.size() > 2) return false;
-  const uint32_t both[] = {a, b};
-  return distanceToSegment(ray, shared.front(), shared.back()) <= limit.steps * floatStep(judge, ray, both);
+  const double step = std::max(floatStep(judge, ray, a), floatStep(judge, ray, b));
+  return distanceToSegment(ray, shared.front(), shared.back()) <= limit.steps * step;
 }
 
 }  // namespace

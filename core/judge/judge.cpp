@@ -86,6 +86,15 @@ bool Judge::meets(const JudgeRay& ray, uint32_t triangle) const {
   return exactContact(ray, shape).has_value();
 }
 
+std::vector<uint32_t> Judge::near(const JudgeRay& ray, double reach, double limit) const {
+  std::vector<uint32_t> triangles;
+  candidates_.walk(
+      ray, reach, [&](uint32_t triangle) { triangles.push_back(triangle); }, [=] { return limit; });
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  return triangles;
+}
+
 std::optional<DoubleRange> Judge::planeDistance(const JudgeRay& ray, uint32_t triangle) const {
   const JudgeTriangle shape = corners(triangle);
   DoubleRange t;

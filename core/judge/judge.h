@@ -36,6 +36,10 @@ class Judge {
   /// Nothing where they are parallel or the triangle has no area.
   std::optional<DoubleRange> planeDistance(const JudgeRay& ray, uint32_t triangle) const;
 
+  /// All triangles that come within `reach` (world units) of the ray before t = limit, and perhaps others;
+  /// ascending.
+  std::vector<uint32_t> near(const JudgeRay& ray, double reach, double limit) const;
+
   /// The corners of a triangle.
   JudgeTriangle corners(uint32_t triangle) const;
   uint32_t triangleCount() const { return uint32_t(scene_.triangles.size()); }

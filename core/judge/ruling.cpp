@@ -1,192 +1,143 @@
 #include "core/judge/ruling.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
+#include <numeric>
+
+#include "core/judge/seen_triangle.h"
 
 namespace sightline {
 namespace {
 
 /// Half a unit in the last place of float, as a share.
 constexpr double kFloatRounding = 0x1p-24;
-/// Shares of the limit at which rays beside the given one are tried, in 26 directions.
+/// Shares of the limit by which pieces are moved, in 26 directions.
 constexpr double kTriedShares[] = {0.97, 0.11};
-/// First triangles whose edges are stepped over at most: a corner may have any number.
-constexpr size_t kTriedTriangles = 16;
-/// Triangles about the origin that a ray may pass as if they were behind it.
-constexpr int kPassedAtOrigin = 8;
-/// Some units in the last place of double.
-constexpr double kDoubleRounding = 0x1p-46;
 
-/// Axes at right angles to the ray.
-struct RayFrame {
-  glm::dvec3 forward, right, up;
-};
-
-RayFrame frameOf(const glm::dvec3& direction) {
-  const glm::dvec3 forward = glm::normalize(direction / maxAbs(direction));
-  const glm::dvec3 size = glm::abs(forward);
-  const glm::dvec3 axis = size.x <= size.y && size.x <= size.z
-                              ? glm::dvec3(1, 0, 0)
-                              : (size.y <= size.z ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1));
-  const glm::dvec3 right = glm::normalize(glm::cross(forward, axis));
-  return {forward, right, glm::cross(forward, right)};
+/// Distances at which the ray may meet the triangle when that is moved by up to `reach`: about where it meets
+/// its plane, not beyond its corners.
+DoubleRange possibleDistances(const Judge& judge, const JudgeRay& ray, uint32_t triangle, double reach) {
+  const JudgeTriangle shape = judge.corners(triangle);
+  const double length = glm::length(ray.direction), slack = reach / length;
+  const auto along = [&](const glm::dvec3& corner) {
+    return glm::dot((corner - ray.origin) / length, ray.direction / length);
+  };
+  const auto [nearest, farthest] = std::minmax({along(shape.a), along(shape.b), along(shape.c)});
+  const DoubleRange corners{nearest - slack, farthest + slack};
+  const auto plane = judge.planeDistance(ray, triangle);
+  if (!plane) return corners;
+  const glm::dvec3 normal = glm::cross(shape.b - shape.a, shape.c - shape.a);
+  const double change = reach * glm::length(normal) / std::fabs(glm::dot(ray.direction, normal));
+  if (!std::isfinite(change)) return corners;
+  return {std::clamp(plane->low - change, corners.low, corners.high),
+          std::clamp(plane->high + change, corners.low, corners.high)};
 }
 
-/// The point of the segment nearest to the third axis.
-glm::dvec3 nearestOfSegment(const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec2 ab(b - a);
-  const double length2 = glm::dot(ab, ab);
-  if (length2 == 0) return a;
-  return glm::mix(a, b, std::clamp(-glm::dot(glm::dvec2(a), ab) / length2, 0.0, 1.0));
-}
-
-/// A triangle seen along the ray, which is the third axis.
-struct SeenTriangle {
-  glm::dvec3 corners[3];
-  glm::dvec3 nearest_of_edge[3];  ///< to the ray
-
-  SeenTriangle(const JudgeTriangle& t, const JudgeRay& ray, const RayFrame& frame) {
-    const glm::dvec3 moved[3] = {t.a - ray.origin, t.b - ray.origin, t.c - ray.origin};
-    for (int i = 0; i < 3; ++i) {
-      corners[i] = {glm::dot(moved[i], frame.right), glm::dot(moved[i], frame.up),
-                    glm::dot(moved[i], frame.forward)};
-    }
-    for (int i = 0; i < 3; ++i) nearest_of_edge[i] = nearestOfSegment(corners[i], corners[(i + 1) % 3]);
-  }
-  glm::dvec2 nearestOfBorder() const {
-    const auto nearer = [](const glm::dvec2& a, const glm::dvec2& b) {
-      return glm::dot(a, a) < glm::dot(b, b);
-    };
-    return std::min(
-        {glm::dvec2(nearest_of_edge[0]), glm::dvec2(nearest_of_edge[1]), glm::dvec2(nearest_of_edge[2])},
-        nearer);
-  }
-  glm::dvec2 centroid() const { return glm::dvec2(corners[0] + corners[1] + corners[2]) / 3.0; }
-};
-
-/// Tries rays beside the given one.
+/// Looks for a way in which rounding lets a ray get to an answer.
 class RoundingSearch {
  public:
-  RoundingSearch(const Judge& judge, const JudgeRay& ray, uint32_t answer, const ExactHit& exact,
-                 double reach)
-      : judge_(judge),
-        ray_(ray),
-        answer_(answer),
-        exact_(exact),
-        reach_(reach),
-        frame_(frameOf(ray.direction)) {}
+  RoundingSearch(const Judge& judge, const JudgeRay& ray, double steps)
+      : judge_(judge), ray_(ray), frame_(ray.direction), steps_(steps) {}
 
-  /// Whether a ray within reach gives the answer.
-  bool explains() const {
-    return works(ray_) || nextToAnswer() || throughAnswer() || pastFirst() || anywhere();
+  /// Whether all that is surely nearer than `limit` and surely before the origin can be got past. radius:
+  /// where to look for it, world units.
+  bool canPassUpTo(double limit, double radius) {
+    findObstacles(limit, radius);
+    joinPieces();
+    for (size_t i = 0; i < obstacles_.size(); ++i) {
+      if (pieceOf(i) == i && !canPass(i)) return false;
+    }
+    return true;
   }
 
  private:
-  bool worksMoved(const glm::dvec3& offset) const {
-    return works(JudgeRay{ray_.origin + offset, ray_.direction});
-  }
-  bool worksBeside(const glm::dvec2& seen) const {
-    return worksMoved(frame_.right * seen.x + frame_.up * seen.y);
-  }
+  struct Obstacle {
+    uint32_t triangle;
+    SeenTriangle seen;
+    double reach;  ///< by how much it may be moved, world units
+  };
 
-  /// Whether the answer is right for this ray. A triangle so close to the origin that rounding may put it
-  /// behind it does not count: then what comes after it does.
-  bool works(JudgeRay ray) const {
-    for (int passed = 0;; ++passed) {
-      const ExactHit first = judge_.nearest(ray);
-      if (isFirst(first, ray)) return true;
-      if (first.missed() || passed == kPassedAtOrigin) return false;
-      for (const uint32_t triangle : first.triangles) {
-        if (depths(ray, triangle).low > 0) return false;
-      }
-      const double least = kDoubleRounding * (maxAbs(ray.origin) / maxAbs(ray.direction));
-      ray.origin += ray.direction * (first.t.high * (1 + kDoubleRounding) + least);
+  void findObstacles(double limit, double radius) {
+    for (const uint32_t triangle : judge_.near(ray_, radius, limit)) {
+      const SeenTriangle seen(judge_.corners(triangle), ray_, frame_);
+      const double reach = steps_ * floatStep(judge_, ray_, triangle);
+      if (seen.distance() > reach) continue;
+      const DoubleRange t = possibleDistances(judge_, ray_, triangle, reach);
+      if (t.low > 0 && t.high < limit) obstacles_.push_back({triangle, seen, reach});
     }
   }
 
-  bool isFirst(const ExactHit& first, const JudgeRay& ray) const {
-    if (answer_ == kNoTriangle || first.missed()) return (answer_ == kNoTriangle) == first.missed();
-    if (first.contains(answer_)) return true;
-    if (!judge_.meets(ray, answer_)) return false;
-    const double least = depths(ray, answer_).low;
-    return std::any_of(first.triangles.begin(), first.triangles.end(),
-                       [&](uint32_t triangle) { return least <= depths(ray, triangle).high; });
-  }
-
-  /// Distances at which the ray, which meets the triangle, does so when it is moved by up to reach_; not
-  /// beyond its corners.
-  DoubleRange depths(const JudgeRay& ray, uint32_t triangle) const {
-    const auto t = judge_.planeDistance(ray, triangle);
-    const JudgeTriangle shape = judge_.corners(triangle);
-    const double length = glm::length(ray.direction), slack = reach_ / length;
-    const glm::dvec3 normal = glm::cross(shape.b - shape.a, shape.c - shape.a);
-    const double change = slack * length * glm::length(normal) / std::fabs(glm::dot(ray.direction, normal));
-    const auto along = [&](const glm::dvec3& corner) {
-      return glm::dot(corner - ray.origin, ray.direction) / (length * length);
+  /// Joins obstacles that share a corner or an edge where the ray passes.
+  void joinPieces() {
+    piece_.resize(obstacles_.size());
+    std::iota(piece_.begin(), piece_.end(), size_t(0));
+    std::map<std::array<double, 6>, size_t> owner;
+    const auto join = [&](const glm::dvec3& p, const glm::dvec3& q, size_t obstacle) {
+      std::array<double, 6> key{p.x, p.y, p.z, q.x, q.y, q.z};
+      const auto [place, fresh] = owner.emplace(key, obstacle);
+      if (!fresh) piece_[pieceOf(obstacle)] = pieceOf(place->second);
     };
-    const auto [least, most] = std::minmax({along(shape.a), along(shape.b), along(shape.c)});
-    return {std::max(t->low - change, least - slack), std::min(t->high + change, most + slack)};
-  }
-
-  /// Rays just inside the answer's triangle, where they can be reached.
-  bool nextToAnswer() const {
-    if (answer_ == kNoTriangle) return false;
-    const SeenTriangle seen(judge_.corners(answer_), ray_, frame_);
-    const glm::dvec2 border = seen.nearestOfBorder(), inwards = seen.centroid() - border;
-    const double spare = reach_ - glm::length(border), depth = glm::length(inwards);
-    if (spare <= 0 || depth == 0) return false;
-    for (const double share : {0.5, 0.01}) {
-      if (worksBeside(border + inwards * (share * std::min(1.0, spare / depth)))) return true;
-    }
-    return false;
-  }
-
-  /// Rays that turn through the answer's triangle, which is seen edge on: from either side of it to the
-  /// middle of what lies in reach.
-  bool throughAnswer() const {
-    if (answer_ == kNoTriangle) return false;
-    const JudgeTriangle shape = judge_.corners(answer_);
-    const SeenTriangle seen(shape, ray_, frame_);
-    glm::dvec3 sum(0.0);
-    int in_reach = 0;
-    for (const glm::dvec3& place : seen.nearest_of_edge) {
-      if (glm::length(glm::dvec2(place)) > 0.9 * reach_) continue;
-      sum += place;
-      ++in_reach;
-    }
-    const glm::dvec3 normal = glm::cross(shape.b - shape.a, shape.c - shape.a);
-    if (in_reach < 2 || normal == glm::dvec3(0.0) || !(sum.z > 0)) return false;
-    const glm::dvec3 middle = sum / double(in_reach);
-    const glm::dvec3 target =
-        ray_.origin + frame_.right * middle.x + frame_.up * middle.y + frame_.forward * middle.z;
-    const double length = glm::length(ray_.direction);
-    for (const double side : {0.5, -0.5}) {
-      const glm::dvec3 origin = ray_.origin + glm::normalize(normal) * (side * reach_);
-      if (works(JudgeRay{origin, (target - origin) * (length / middle.z)})) return true;
-    }
-    return false;
-  }
-
-  /// Rays just beyond the edges of what is met first.
-  bool pastFirst() const {
-    for (size_t i = 0; i < std::min(kTriedTriangles, exact_.triangles.size()); ++i) {
-      const SeenTriangle seen(judge_.corners(exact_.triangles[i]), ray_, frame_);
-      for (const glm::dvec2 place : seen.nearest_of_edge) {
-        const double distance = glm::length(place);
-        if (distance > 0 && distance < 0.9 * reach_ && worksBeside(place * (1 + 0.1 * reach_ / distance)))
-          return true;
+    for (size_t i = 0; i < obstacles_.size(); ++i) {
+      const JudgeTriangle t = judge_.corners(obstacles_[i].triangle);
+      const glm::dvec3 corners[] = {t.a, t.b, t.c};
+      for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 &p = corners[k], &q = corners[(k + 1) % 3];
+        const Obstacle& its = obstacles_[i];
+        if (glm::length(its.seen.corners[k]) <= 2 * its.reach) join(p, p, i);
+        if (glm::length(its.seen.nearest_of_edge[k]) > its.reach) continue;
+        const bool ordered = std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
+        join(ordered ? p : q, ordered ? q : p, i);
       }
     }
+  }
+
+  size_t pieceOf(size_t obstacle) const {
+    while (piece_[obstacle] != obstacle) obstacle = piece_[obstacle];
+    return obstacle;
+  }
+
+  /// Whether a ray beside the given one passes the piece: the same as moving the piece.
+  bool canPass(size_t piece) const {
+    const auto passes = [&](const glm::dvec3& offset) {
+      const JudgeRay moved{ray_.origin + offset, ray_.direction};
+      for (size_t i = 0; i < obstacles_.size(); ++i) {
+        if (pieceOf(i) == piece && judge_.meets(moved, obstacles_[i].triangle)) return false;
+      }
+      return true;
+    };
+    if (passes(glm::dvec3(0.0))) return true;
+    double reach = 0;
+    for (size_t i = 0; i < obstacles_.size(); ++i) {
+      if (pieceOf(i) == piece) reach = std::max(reach, obstacles_[i].reach);
+    }
+    for (size_t i = 0; i < obstacles_.size(); ++i) {
+      if (pieceOf(i) == piece && passesNextTo(obstacles_[i].seen, reach, passes)) return true;
+    }
+    return passesAnywhere(reach, passes);
+  }
+
+  /// Tries rays just beyond the edges of a triangle.
+  template <typename Passes>
+  bool passesNextTo(const SeenTriangle& seen, double reach, const Passes& passes) const {
+    for (const glm::dvec2& place : seen.nearest_of_edge) {
+      const double distance = glm::length(place);
+      if (distance == 0 || distance > 0.9 * reach) continue;
+      const glm::dvec2 beyond = place * (1 + 0.05 * reach / distance);
+      if (passes(frame_.right * beyond.x + frame_.up * beyond.y)) return true;
+    }
     return false;
   }
 
-  bool anywhere() const {
+  template <typename Passes>
+  bool passesAnywhere(double reach, const Passes& passes) const {
     for (const double share : kTriedShares) {
       for (int i = 0; i < 27; ++i) {
         const glm::dvec3 way(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-        if (i == 13) continue;
+        if (way == glm::dvec3(0.0)) continue;
         const glm::dvec3 offset = frame_.right * way.x + frame_.up * way.y + frame_.forward * way.z;
-        if (worksMoved(offset * (share * reach_ / glm::length(way)))) return true;
+        if (passes(offset * (share * reach / glm::length(way)))) return true;
       }
     }
     return false;
@@ -194,32 +145,18 @@ class RoundingSearch {
 
   const Judge& judge_;
   const JudgeRay& ray_;
-  uint32_t answer_;
-  const ExactHit& exact_;
-  double reach_;  ///< world units
   RayFrame frame_;
+  double steps_;
+  std::vector<Obstacle> obstacles_;
+  std::vector<size_t> piece_;  ///< of an obstacle: another one of its piece, or itself
 };
-
-/// Whether the answer's distance is that of its triangle, moved by up to `reach`.
-bool rightDistance(const Judge& judge, const JudgeRay& ray, const Hit& answer, double reach) {
-  const auto t = judge.planeDistance(ray, answer.triangle);
-  if (!t) return true;  // edge on: anything between its corners
-  const JudgeTriangle shape = judge.corners(answer.triangle);
-  const glm::dvec3 normal = glm::cross(shape.b - shape.a, shape.c - shape.a);
-  const double change = reach * glm::length(normal) / std::fabs(glm::dot(ray.direction, normal));
-  const double rounding = std::fabs(t->high) * 4 * kFloatRounding;
-  return answer.t >= t->low - change - rounding && answer.t <= t->high + change + rounding;
-}
 
 }  // namespace
 
-double floatStep(const Judge& judge, const JudgeRay& ray, std::span<const uint32_t> triangles) {
-  double reach = 0;
-  for (const uint32_t triangle : triangles) {
-    const JudgeTriangle t = judge.corners(triangle);
-    for (const glm::dvec3& corner : {t.a, t.b, t.c}) reach = std::max(reach, maxAbs(corner - ray.origin));
-  }
-  return reach * kFloatRounding;
+double floatStep(const Judge& judge, const JudgeRay& ray, uint32_t triangle) {
+  const JudgeTriangle t = judge.corners(triangle);
+  return kFloatRounding *
+         std::max({maxAbs(t.a - ray.origin), maxAbs(t.b - ray.origin), maxAbs(t.c - ray.origin)});
 }
 
 Ruling rule(const Judge& judge, const Ray& float_ray, const Hit& answer, const ExactHit& exact,
@@ -230,25 +167,29 @@ Ruling rule(const Judge& judge, const Ray& float_ray, const Hit& answer, const E
   if (hit && (answer.triangle >= judge.triangleCount() || !(answer.t > 0)))
     return {Verdict::kWrong, HUGE_VAL};
 
-  std::vector<uint32_t> involved = exact.triangles;
-  if (hit) involved.push_back(answer.triangle);
-  const double step = floatStep(judge, ray, involved), reach = limit.steps * step;
-  const bool meets = hit && (exact.contains(answer.triangle) || judge.meets(ray, answer.triangle));
+  double farthest = HUGE_VAL;  // what is surely nearer hides the answer
+  double radius = 0;
   Ruling ruling;
-  if (hit && !meets) {
-    const SeenTriangle seen(judge.corners(answer.triangle), ray, frameOf(ray.direction));
-    ruling.steps_beside = glm::length(seen.nearestOfBorder()) / step;
+  if (hit) {
+    const double step = floatStep(judge, ray, answer.triangle);
+    const bool meets = exact.contains(answer.triangle) || judge.meets(ray, answer.triangle);
+    const SeenTriangle seen(judge.corners(answer.triangle), ray, RayFrame(ray.direction));
+    if (!meets) ruling.steps_beside = seen.distance() / step;
+    const DoubleRange t = possibleDistances(judge, ray, answer.triangle, limit.steps * step);
+    const double rounding = std::fabs(t.high) * 4 * kFloatRounding;
+    if (ruling.steps_beside > limit.steps || answer.t < t.low - rounding || answer.t > t.high + rounding) {
+      ruling.verdict = Verdict::kWrong;
+      return ruling;
+    }
+    if (exact.contains(answer.triangle)) return ruling;
+    farthest = t.low;
+    radius = limit.steps * step;
   }
-  if (hit && !rightDistance(judge, ray, answer, reach)) {
-    ruling.verdict = Verdict::kWrong;
-  } else if (meets && exact.contains(answer.triangle)) {
-    ruling.verdict = Verdict::kRight;
-  } else if (RoundingSearch(judge, ray, answer.triangle, exact, reach).explains()) {
-    ruling.verdict = Verdict::kRounded;
-  } else {
-    const bool real = !hit || meets || ruling.steps_beside <= limit.steps;
-    ruling.verdict = real && !exact.missed() ? Verdict::kMissed : Verdict::kWrong;
+  for (const uint32_t triangle : exact.triangles) {
+    radius = std::max(radius, limit.steps * floatStep(judge, ray, triangle));
   }
+  const bool rounded = RoundingSearch(judge, ray, limit.steps).canPassUpTo(farthest, radius);
+  ruling.verdict = rounded ? Verdict::kRounded : Verdict::kMissed;
   return ruling;
 }
 

@@ -1,6 +1,4 @@
 #pragma once
-#include <span>
-
 #include "core/judge/judge.h"
 #include "core/shared/types.h"
 
@@ -9,9 +7,9 @@ namespace sightline {
 /// How the judge finds a device's answer for a ray.
 enum class Verdict : uint8_t {
   kRight,    ///< exact: the triangle is met at the smallest distance, or nothing is met
-  kRounded,  ///< right for a ray beside it, at most some float steps away: the ray passes close to an edge
-  kMissed,   ///< nothing, or something behind the first triangle, though no ray near by gets past that
-  kWrong,    ///< a triangle that no ray near by meets, or at a distance that is off
+  kRounded,  ///< exact once corners are moved by some float steps: the ray passes close to an edge
+  kMissed,   ///< nothing, or something behind the first triangle, which rounding cannot move out of the way
+  kWrong,    ///< a triangle that the ray does not come near, or at a distance that is off
 };
 inline constexpr uint32_t kVerdicts = 4;
 
@@ -22,22 +20,25 @@ struct Ruling {
 
 /// What counts as rounding.
 struct RoundingLimit {
-  /// Float steps by which a ray may pass beside what it is said to meet. Our own test
-  /// (core/shared/triangle.h) moves corners by at most 5 steps sideways; hardware is not told to do better
-  /// than that.
+  /// Float steps by which corners may be moved. Our own test (core/shared/triangle.h) moves them by at most 5
+  /// steps sideways; hardware is not told to do better than that.
   double steps = 16;
 };
 
-/// A float step at a ray and triangles: 2^-24 of the largest component of a corner minus the origin. It is
-/// what rounding that difference moves a corner by, and does not depend on where the whole scene lies.
-double floatStep(const Judge& judge, const JudgeRay& ray, std::span<const uint32_t> triangles);
+/// A float step at a ray and a triangle, world units: 2^-24 of the largest component of a corner minus the
+/// origin. It is what rounding that difference moves a corner by; it does not depend on where the whole scene
+/// lies.
+double floatStep(const Judge& judge, const JudgeRay& ray, uint32_t triangle);
 
 /// Rules on a device's answer; `exact` is judge.nearest of the ray.
 ///
-/// Whether rounding explains an answer that is not right is shown, not guessed: the judge looks for a ray
-/// parallel to the given one, at most limit.steps away, for which the answer is exact (depths may differ by
-/// what so many steps at either triangle make). So a ray aimed at a corner inside a closed surface must hit
-/// it, as every ray near by does; one aimed at a silhouette may pass.
+/// Rounding moves corners, but a corner that several triangles share moves for all of them alike: that is
+/// what watertight means. So an answer that is not right is explained by rounding if the ray passes within
+/// limit.steps of its triangle, and if whatever lies in front can be moved out of the way by as much: each
+/// piece of surface, joined at the corners and edges that the ray passes, as a whole. What is so near to the
+/// answer or to the origin that rounding may put it behind them is not in the way. A ray aimed at a corner
+/// inside a surface must hit it; one aimed at a silhouette, or at a gap between two surfaces that touch
+/// without sharing corners (a T-junction), may pass.
 Ruling rule(const Judge& judge, const Ray& ray, const Hit& answer, const ExactHit& exact,
             const RoundingLimit& limit = {});
 
