@@ -1,0 +1,64 @@
+// What the Vulkan shaders of a launch read: the one struct that the host fills in for every launch. C++ and
+// GLSL (scalar layout); addresses are device addresses of buffers.
+#ifndef SL_LAUNCH_H
+#define SL_LAUNCH_H
+#include "core/shared/stage_params.h"
+SL_NAMESPACE_BEGIN
+
+/// Words of 32 bits that one work item of the list shaders counts and writes, and the work items of the one
+/// group that sums up the counts.
+SL_CONST uint kBlockWords = 64u;
+SL_CONST uint kSumItems = 64u;
+
+/// Words of the counters' buffer. Rays are counted in many words, so that work items do not fight for one.
+SL_CONST uint kRayCounters = 256u;      ///< 0 .. 255: rays
+SL_CONST uint kMissingCounter = 256u;   ///< rays that hit something outside the set
+SL_CONST uint kOverflowCounter = 257u;  ///< not 0: the hash set was full
+SL_CONST uint kListCounter = 258u;      ///< bits set in `words`, by sum_blocks
+SL_CONST uint kCounterWords = 259u;
+
+SL_STRUCT(VulkanLaunch) {
+  StageParams params;
+  RandomSegment segment;
+  uvec4 shifts;  ///< of the random rays
+  // The scene. A leaf is a place in the order in which the driver got the triangles.
+  uint64 tlas;         ///< acceleration structure
+  uint64 part_starts;  ///< uint[]: first leaf of each bottom-level structure
+  uint64 leaf_ids;     ///< uint[]: leaf -> triangle id
+  uint64 leaf_of;      ///< uint[]: triangle id -> its leaf
+  uint64 corners;      ///< float[9] a leaf
+  uint64 faces;        ///< Face[]
+  // Set, list and counters.
+  uint64 keys;
+  uint64 winner;
+  uint64 fresh;
+  uint64 counters;
+  uint64 entries;  ///< PvsEntry[]
+  // Stages.
+  uint64 segments;         ///< RandomSegment[] of the batch
+  uint64 border_hits;      ///< uint[] a border ray: leaf that it hit, or kNoTriangle
+  uint64 bits;             ///< a bit a border ray: it met a discontinuity
+  uint64 discontinuities;  ///< uint[]: indices of border rays
+  uint64 rays;             ///< Ray[] that trace_rays reads, stage_rays writes
+  uint64 hits;             ///< Hit[] of trace_rays
+  // Lists from bits.
+  uint64 words;         ///< uint[]: bits to list
+  uint64 block_counts;  ///< uint[]: bits in each block of kBlockWords words, then where its indices start
+  uint64 indices;       ///< uint[]: triangles, or indices of set bits
+  uint64 old_keys;      ///< the hash set before it grew
+  uint64 old_winner;
+  uint64 items_before;  ///< discontinuities of the cell before those of the last border launch
+  uint capacity;        ///< of the hash set; 0: array
+  uint old_capacity;
+  uint border_first;   ///< entry of the first border ray
+  uint reverse_first;  ///< first discontinuity of the reverse rays
+  uint stage;          ///< kStage... of the batch that is collected
+  uint segment_count;
+  uint list_end;  ///< entries in the list
+  uint word_count;
+  uint block_count;
+  uint reserved;
+};
+
+SL_NAMESPACE_END
+#endif

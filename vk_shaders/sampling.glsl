@@ -1,0 +1,74 @@
+// The rays of a batch by their index: random, border and reverse.
+#ifndef SL_SAMPLING_GLSL
+#define SL_SAMPLING_GLSL
+#include "vk_shaders/state.glsl"
+#include "core/shared/border.h"
+#include "core/shared/random_ray.h"
+#include "core/shared/reverse.h"
+
+/// Corner 0, 1 or 2 of the triangle in a leaf.
+vec3 leafCorner(uint leaf, uint corner) {
+  Floats corners = Floats(SL_LAUNCH.corners + 36ul * leaf);
+  return vec3(corners.at[3u * corner], corners.at[3u * corner + 1u], corners.at[3u * corner + 2u]);
+}
+
+/// Border ray `index` (0 ..) of the last border launch.
+Ray borderRayAt(uint index) {
+  StageParams params = SL_LAUNCH.params;
+  uint per_entry = borderRayCount(params);
+  uint entry_index = index / per_entry;
+  uint k = index - entry_index * per_entry;
+  uvec4 entry = Entries(SL_LAUNCH.entries).at[SL_LAUNCH.border_first + entry_index].origin_triangle;
+  vec3 origin = vec3(uintBitsToFloat(entry.x), uintBitsToFloat(entry.y), uintBitsToFloat(entry.z));
+  uint leaf = Words(SL_LAUNCH.leaf_of).at[entry.w];
+  BorderEdge edge = borderEdge(leafCorner(leaf, 0u), leafCorner(leaf, 1u), leafCorner(leaf, 2u),
+                               borderSide(k, params), origin, params);
+  return borderRay(edge, k, origin, params);
+}
+
+/// Discontinuity `place` (0 ..) of the last border launch.
+ReverseItem reverseItemAt(uint place) {
+  uint border_index = Words(SL_LAUNCH.discontinuities).at[place];
+  Ray border = borderRayAt(border_index);
+  vec3 target = add3(xyz3(border.origin), xyz3(border.direction));
+  uint64 number = SL_LAUNCH.items_before + place;
+  uint mask = 0u;
+  for (uint f = 0u; f < SL_LAUNCH.params.counts.w; ++f) {
+    mask |= (faceLooksAt(Faces(SL_LAUNCH.faces).at[f], target) ? 1u : 0u) << f;
+  }
+  ReverseItem item;
+  item.target = vec4(target.x, target.y, target.z, 0.0f);
+  uint occluder = Words(SL_LAUNCH.border_hits).at[border_index];
+  bool occluded = occluder != kNoTriangle;
+  item.number = uvec4(uint(number), uint(number >> 32), mask, occluded ? 1u : 0u);
+  item.a = occluded ? vec4(leafCorner(occluder, 0u), 0.0f) : vec4(0.0f);
+  item.b = occluded ? vec4(leafCorner(occluder, 1u), 0.0f) : vec4(0.0f);
+  item.c = occluded ? vec4(leafCorner(occluder, 2u), 0.0f) : vec4(0.0f);
+  return item;
+}
+
+/// Reverse ray `index` (0 ..) of the reverse launch, or none.
+Ray reverseRayAt(uint index) {
+  StageParams params = SL_LAUNCH.params;
+  uint per_item = reverseRayCount(params);
+  uint place = index / per_item;
+  uint k = index - place * per_item;
+  ReverseItem item = reverseItemAt(SL_LAUNCH.reverse_first + place);
+  if (item.number.z == 0u) return noRay();
+  return reverseRay(item, Faces(SL_LAUNCH.faces).at[reverseFace(item, k)], k, params);
+}
+
+/// The random ray with this index (1 ..) in the batch.
+Ray segmentRayAt(uint index) {
+  for (uint s = 0u; s < SL_LAUNCH.segment_count; ++s) {
+    RandomSegment segment = Segments(SL_LAUNCH.segments).at[s];
+    uint offset = index - segment.batch.x;
+    if (offset < segment.range.w) {
+      Face face = Faces(SL_LAUNCH.faces).at[segment.range.x];
+      return randomRay(segmentFirst(segment), offset, face, SL_LAUNCH.params.shifts);
+    }
+  }
+  return noRay();
+}
+
+#endif

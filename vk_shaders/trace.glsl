@@ -1,0 +1,80 @@
+// The sampling stages' main function and their way to the nearest hit: a ray generation shader of a ray
+// tracing pipeline, or, with SL_RAY_QUERY, ray queries in a compute shader.
+#extension GL_GOOGLE_include_directive : require
+#if SL_RAY_QUERY
+#extension GL_EXT_ray_query : require
+#else
+#extension GL_EXT_ray_tracing : require
+#endif
+#include "vk_shaders/sampling.glsl"
+
+/// What the driver found: t, and the leaf (a triangle's place in the order of upload) or kNoTriangle.
+struct LeafHit {
+  float t;
+  uint leaf;
+};
+
+const float kFarthest = 3.402823466e38f;
+
+uint leafOf(uint part, uint primitive) {
+  return Words(SL_LAUNCH.part_starts).at[part] + primitive;
+}
+
+#if SL_RAY_QUERY
+
+layout(local_size_x_id = 0) in;
+uint itemIndex() {
+  return gl_GlobalInvocationID.x;
+}
+
+LeafHit traceNearest(Ray ray) {
+  rayQueryEXT query;
+  rayQueryInitializeEXT(query, accelerationStructureEXT(SL_LAUNCH.tlas), gl_RayFlagsOpaqueEXT, 0xffu,
+                        ray.origin.xyz, 0.0f, ray.direction.xyz, kFarthest);
+  while (rayQueryProceedEXT(query)) {
+  }
+  if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
+    return LeafHit(0.0f, kNoTriangle);
+  }
+  uint part = rayQueryGetIntersectionInstanceCustomIndexEXT(query, true);
+  uint primitive = rayQueryGetIntersectionPrimitiveIndexEXT(query, true);
+  return LeafHit(rayQueryGetIntersectionTEXT(query, true), leafOf(part, primitive));
+}
+
+#else
+
+/// x: bits of t, y: instance's custom index or kNoTriangle, z: primitive.
+layout(location = 0) rayPayloadEXT uvec3 found;
+uint itemIndex() {
+  return gl_LaunchIDEXT.x;
+}
+
+LeafHit traceNearest(Ray ray) {
+  traceRayEXT(accelerationStructureEXT(SL_LAUNCH.tlas), gl_RayFlagsOpaqueEXT, 0xffu, 0u, 0u, 0u,
+              ray.origin.xyz, 0.0f, ray.direction.xyz, kFarthest, 0);
+  if (found.y == kNoTriangle) return LeafHit(0.0f, kNoTriangle);
+  return LeafHit(uintBitsToFloat(found.x), leafOf(found.y, found.z));
+}
+
+#endif
+
+/// Nearest hit of a ray, by leaf; a ray without direction hits nothing.
+LeafHit nearestHit(Ray ray) {
+  if (!hasDirection(ray)) return LeafHit(0.0f, kNoTriangle);
+  return traceNearest(ray);
+}
+
+uint triangleOf(LeafHit hit) {
+  return hit.leaf == kNoTriangle ? kNoTriangle : Words(SL_LAUNCH.leaf_ids).at[hit.leaf];
+}
+
+void countRay(uint item) {
+  atomicAdd(Words(SL_LAUNCH.counters).at[(item >> 5) % kRayCounters], 1u);
+}
+
+void runItem(uint item);
+
+void main() {
+  uint item = first_item + itemIndex();
+  if (item < item_end) runItem(item);
+}
