@@ -5,6 +5,8 @@
 #include <limits>
 #include <map>
 
+#include "core/device/device.h"
+
 namespace sightline {
 namespace {
 
@@ -25,7 +27,7 @@ CLI::Validator between(double low, double high) {
 CLI::Validator deviceName() {
   return CLI::Validator(
       [](std::string& name) {
-        if (name == "cpu" || name == "opencl" || name.rfind("opencl:", 0) == 0) return std::string();
+        if (isDeviceName(name)) return std::string();
         return "no device \"" + name + "\"; sightline devices lists what can run here";
       },
       "");

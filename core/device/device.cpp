@@ -5,19 +5,22 @@
 #include "core/device/cpu_device.h"
 #include "core/device/opencl_context.h"
 #include "core/device/opencl_device.h"
+#include "core/device/vulkan_device.h"
+#include "core/device/vulkan_devices.h"
 #include "core/error.h"
 
 namespace sightline {
 
 namespace {
 
-bool isOpenCl(const std::string& name) {
-  return name == "opencl" || name.starts_with("opencl:");
+/// The kind alone, or with ":" and a selection.
+bool isOfKind(const std::string& name, const std::string& kind) {
+  return name == kind || name.starts_with(kind + ":");
 }
 
 [[noreturn]] void throwUnknown(const std::string& name) {
-  throw Error(fmt::format("device '{}': expected cpu, opencl, opencl:INDEX or opencl:PART-OF-NAME; "
-                          "'sightline devices' lists what can run here",
+  throw Error(fmt::format("device '{}': expected cpu, opencl, vulkan, or the latter two with :INDEX or "
+                          ":PART-OF-NAME; 'sightline devices' lists what can run here",
                           name),
               kExitUsage);
 }
@@ -27,12 +30,19 @@ bool isOpenCl(const std::string& name) {
 std::vector<DeviceInfo> listDevices() {
   std::vector<DeviceInfo> devices{cpuDeviceInfo()};
   for (DeviceInfo& device : listOpenClDevices()) devices.push_back(std::move(device));
+  for (DeviceInfo& device : listVulkanDevices()) devices.push_back(std::move(device));
   return devices;
 }
 
+bool isDeviceName(const std::string& name) {
+  return name == "cpu" || isOfKind(name, "opencl") || isOfKind(name, "vulkan");
+}
+
 void requireDevice(const std::string& name) {
-  if (isOpenCl(name)) {
+  if (isOfKind(name, "opencl")) {
     requireOpenClDevice(name);
+  } else if (isOfKind(name, "vulkan")) {
+    selectVulkanDevice(VulkanInstance(), name);
   } else if (name != "cpu") {
     throwUnknown(name);
   }
@@ -41,7 +51,8 @@ void requireDevice(const std::string& name) {
 std::unique_ptr<Device> makeDevice(const std::string& name, const Scene& scene, const Bvh& bvh,
                                    const DeviceOptions& options) {
   if (name == "cpu") return makeCpuDevice(scene, bvh, options);
-  if (isOpenCl(name)) return makeOpenClDevice(name, scene, bvh, options);
+  if (isOfKind(name, "opencl")) return makeOpenClDevice(name, scene, bvh, options);
+  if (isOfKind(name, "vulkan")) return makeVulkanDevice(name, scene, bvh, options);
   throwUnknown(name);
 }
 

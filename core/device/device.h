@@ -14,7 +14,7 @@ namespace sightline {
 
 /// What a device is, for reports and `sightline devices`.
 struct DeviceInfo {
-  std::string id;        ///< what --device takes: "cpu", "opencl:0"
+  std::string id;        ///< what --device takes: "cpu", "opencl:0", "vulkan:0"
   std::string name;      ///< e.g. the OpenCL device's name
   std::string driver;    ///< version
   std::string layout;    ///< tree layout and kind of traversal, e.g. "bvh2, packets of 8"
@@ -29,7 +29,9 @@ struct DeviceOptions {
   int threads = 0;                   ///< cpu: 0 = all cores
   SetKind set = SetKind::kAuto;      ///< kAuto: array unless it would not fit the budget
   uint64_t memory_budget_bytes = 0;  ///< 0: what the device reports
-  uint32_t work_group_size = 0;      ///< opencl: 0 = the device's own choice
+  uint32_t work_group_size = 0;      ///< opencl, vulkan with ray queries: 0 = the device's own choice
+  uint32_t part_triangles = 0;  ///< vulkan: of a bottom-level acceleration structure at most; 0: its limit
+  bool ray_queries = false;     ///< vulkan: in compute shaders, even where there are ray tracing pipelines
 };
 
 /// Counters of the cell in work, read back after each stage.
@@ -92,8 +94,11 @@ std::vector<DeviceInfo> listDevices();
 /// that a tree takes.
 void requireDevice(const std::string& name);
 
-/// Makes the device that `name` selects and uploads the scene: "cpu", "opencl", "opencl:INDEX" or
-/// "opencl:PART-OF-NAME". Throws Error that lists what there is.
+/// Whether makeDevice could know the name: "cpu"; "opencl" or "vulkan", alone or with ":" and more.
+bool isDeviceName(const std::string& name);
+
+/// Makes the device that `name` selects and uploads the scene: "cpu", "opencl", "opencl:INDEX",
+/// "opencl:PART-OF-NAME", or the same with "vulkan". Throws Error that lists what there is.
 std::unique_ptr<Device> makeDevice(const std::string& name, const Scene& scene, const Bvh& bvh,
                                    const DeviceOptions& options = {});
 

@@ -1,0 +1,25 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "bvh/bvh.h"
+
+namespace sightline {
+
+/// A run of leaf order.
+struct LeafPart {
+  uint32_t first = 0;
+  uint32_t count = 0;  ///< at least 1
+};
+
+/// The order in which a ray-tracing driver gets the triangles, in parts that it can build.
+struct LeafParts {
+  std::vector<uint32_t> ids;    ///< every triangle id once, as the tree's leaves hold them
+  std::vector<LeafPart> parts;  ///< ascending; they tile ids
+};
+
+/// Splits the tree along its upper cut into subtrees of at most `limit` triangles (8 at least: a leaf is
+/// never split). Triangles that spatial splits put into several leaves stay in the first of them.
+LeafParts splitIntoParts(const Bvh& bvh, uint32_t triangle_count, uint32_t limit);
+
+}  // namespace sightline

@@ -1,0 +1,227 @@
+#include "core/device/vulkan_context.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "core/error.h"
+
+namespace sightline {
+namespace {
+
+double mebibytes(uint64_t bytes) {
+  return double(bytes) / 1048576.0;
+}
+
+/// Families of the queue for everything (with graphics, if it can be: drivers list the full queue first) and,
+/// if there is one that does nothing else, of the queue for copies.
+std::vector<uint32_t> chooseFamilies(const VulkanApi& api, VkPhysicalDevice device) {
+  uint32_t count = 0;
+  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  std::optional<uint32_t> compute, transfer;
+  for (uint32_t i = 0; i < count; ++i) {
+    const VkQueueFlags flags = families[i].queueFlags;
+    if ((flags & VK_QUEUE_COMPUTE_BIT) && !compute) compute = i;
+    const bool works = flags & (VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT);
+    if ((flags & VK_QUEUE_TRANSFER_BIT) && !works && !transfer) transfer = i;
+  }
+  if (!compute) throw Error("the Vulkan device has no queue for compute shaders");
+  if (!transfer) return {*compute};
+  return {*compute, *transfer};
+}
+
+}  // namespace
+
+VulkanBuffer& VulkanBuffer::operator=(VulkanBuffer&& other) noexcept {
+  std::swap(memory_, other.memory_);
+  std::swap(buffer_, other.buffer_);
+  std::swap(bytes_, other.bytes_);
+  std::swap(address_, other.address_);
+  std::swap(mapped_, other.mapped_);
+  std::swap(total_, other.total_);
+  return *this;
+}
+
+VulkanBuffer::~VulkanBuffer() {
+  if (total_) *total_ -= bytes_;
+}
+
+VulkanContext::VulkanContext(const std::string& selector, bool ray_queries)
+    : api_(instance_.api()), choice_(selectVulkanDevice(instance_, selector)) {
+  uses_pipelines_ = choice_.has_pipelines && !(ray_queries && choice_.has_ray_queries);
+  if (ray_queries && uses_pipelines_) {
+    throw Error(fmt::format("device \"{}\" ({}) has no ray queries (VK_KHR_ray_query)", choice_.info.id,
+                            choice_.info.name));
+  }
+  choice_.info.layout =
+      uses_pipelines_ ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
+  families_ = chooseFamilies(api_, choice_.physical);
+  api_.vkGetPhysicalDeviceMemoryProperties(choice_.physical, &memory_);
+  readLimits();
+  createDevice();
+}
+
+VulkanContext::~VulkanContext() {
+  if (!device_) return;
+  api_.vkDeviceWaitIdle(device_);
+  api_.vkDestroyDevice(device_, nullptr);
+}
+
+void VulkanContext::createDevice() {
+  auto queries =
+      vkStruct<VkPhysicalDeviceRayQueryFeaturesKHR>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR);
+  queries.rayQuery = VK_TRUE;
+  auto pipelines = vkStruct<VkPhysicalDeviceRayTracingPipelineFeaturesKHR>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR);
+  pipelines.rayTracingPipeline = VK_TRUE;
+  auto structures = vkStruct<VkPhysicalDeviceAccelerationStructureFeaturesKHR>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR);
+  structures.accelerationStructure = VK_TRUE;
+  structures.pNext = uses_pipelines_ ? static_cast<void*>(&pipelines) : &queries;
+  auto core =
+      vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+  core.bufferDeviceAddress = core.scalarBlockLayout = VK_TRUE;
+  core.pNext = &structures;
+  auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
+  features.features.shaderInt64 = features.features.shaderFloat64 = VK_TRUE;
+  features.pNext = &core;
+
+  const char* extensions[] = {
+      VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
+      uses_pipelines_ ? VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME : VK_KHR_RAY_QUERY_EXTENSION_NAME};
+  const float priority = 1;
+  std::vector<VkDeviceQueueCreateInfo> queues;
+  for (const uint32_t family : families_) {
+    auto queue = vkStruct<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
+    queue.queueFamilyIndex = family;
+    queue.queueCount = 1;
+    queue.pQueuePriorities = &priority;
+    queues.push_back(queue);
+  }
+  auto info = vkStruct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
+  info.pNext = &features;
+  info.queueCreateInfoCount = static_cast<uint32_t>(queues.size());
+  info.pQueueCreateInfos = queues.data();
+  info.enabledExtensionCount = static_cast<uint32_t>(std::size(extensions));
+  info.ppEnabledExtensionNames = extensions;
+  checkVk(api_.vkCreateDevice(choice_.physical, &info, nullptr, &device_), "vkCreateDevice");
+  api_.loadDevice(device_, uses_pipelines_);
+  api_.vkGetDeviceQueue(device_, families_.front(), 0, &queue_);
+  api_.vkGetDeviceQueue(device_, families_.back(), 0, &transfer_queue_);
+}
+
+void VulkanContext::readLimits() {
+  auto pipelines = vkStruct<VkPhysicalDeviceRayTracingPipelinePropertiesKHR>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR);
+  auto structures = vkStruct<VkPhysicalDeviceAccelerationStructurePropertiesKHR>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR);
+  if (uses_pipelines_) structures.pNext = &pipelines;
+  auto maintenance = vkStruct<VkPhysicalDeviceMaintenance3Properties>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES);
+  maintenance.pNext = &structures;
+  auto properties = vkStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+  properties.pNext = &maintenance;
+  api_.vkGetPhysicalDeviceProperties2(choice_.physical, &properties);
+  const VkPhysicalDeviceLimits& general = properties.properties.limits;
+  limits_.allocation_bytes = maintenance.maxMemoryAllocationSize;
+  limits_.part_triangles = structures.maxPrimitiveCount;
+  limits_.scratch_alignment = structures.minAccelerationStructureScratchOffsetAlignment;
+  limits_.launch_groups = general.maxComputeWorkGroupCount[0];
+  const uint64_t width = uint64_t(general.maxComputeWorkGroupCount[0]) * general.maxComputeWorkGroupSize[0];
+  limits_.launch_rays =
+      static_cast<uint32_t>(std::min<uint64_t>(pipelines.maxRayDispatchInvocationCount, width));
+  limits_.handle_bytes = pipelines.shaderGroupHandleSize;
+  limits_.table_alignment = pipelines.shaderGroupBaseAlignment;
+}
+
+uint32_t VulkanContext::memoryType(uint32_t allowed, VulkanMemory memory) const {
+  const VkMemoryPropertyFlags visible =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  const VkMemoryPropertyFlags needed = memory == VulkanMemory::kDevice ? 0 : visible;
+  const VkMemoryPropertyFlags welcome = memory == VulkanMemory::kDevice ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
+                                        : memory == VulkanMemory::kReadback
+                                            ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
+                                            : 0;
+  std::optional<uint32_t> second;
+  for (uint32_t type = 0; type < memory_.memoryTypeCount; ++type) {
+    const VkMemoryPropertyFlags flags = memory_.memoryTypes[type].propertyFlags;
+    if (!(allowed >> type & 1) || (flags & needed) != needed) continue;
+    if ((flags & welcome) == welcome) return type;
+    if (!second) second = type;
+  }
+  if (!second) throw Error(fmt::format("{} has no suitable type of memory", choice_.info.id));
+  return *second;
+}
+
+VulkanBuffer VulkanContext::buffer(uint64_t bytes, const char* what, VulkanMemory memory) const {
+  bytes = (std::max<uint64_t>(bytes, 16) + 3) / 4 * 4;
+  const char* advice = "; use the device cpu or opencl, or a smaller scene";
+  if (bytes > limits_.allocation_bytes) {
+    throw Error(fmt::format(
+        "{} ({}): the {} take {:.0f} MiB, more than the {:.0f} MiB that the driver allows "
+        "one buffer{}",
+        info().id, info().name, what, mebibytes(bytes), mebibytes(limits_.allocation_bytes), advice));
+  }
+  auto info = vkStruct<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
+  info.size = bytes;
+  info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  if (memory == VulkanMemory::kDevice) {
+    info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
+                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR |
+                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
+    if (uses_pipelines_) info.usage |= VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR;
+  }
+  if (families_.size() > 1) {
+    info.sharingMode = VK_SHARING_MODE_CONCURRENT;
+    info.queueFamilyIndexCount = static_cast<uint32_t>(families_.size());
+    info.pQueueFamilyIndices = families_.data();
+  }
+  VulkanBuffer result;
+  VkBuffer handle = VK_NULL_HANDLE;
+  checkVk(api_.vkCreateBuffer(device_, &info, nullptr, &handle), "vkCreateBuffer");
+  result.buffer_ = {*this, handle, [](const VulkanContext& context, VkBuffer buffer) {
+                      context.api().vkDestroyBuffer(context.device(), buffer, nullptr);
+                    }};
+  VkMemoryRequirements requirements{};
+  api_.vkGetBufferMemoryRequirements(device_, handle, &requirements);
+
+  auto flags = vkStruct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
+  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  auto allocate = vkStruct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+  if (memory == VulkanMemory::kDevice) allocate.pNext = &flags;
+  allocate.allocationSize = requirements.size;
+  allocate.memoryTypeIndex = memoryType(requirements.memoryTypeBits, memory);
+  // Drivers on the processor promise more memory than there is.
+  VkDeviceMemory block = VK_NULL_HANDLE;
+  const bool fits = *allocated_ + bytes <= this->info().memory_bytes;
+  const VkResult code =
+      fits ? api_.vkAllocateMemory(device_, &allocate, nullptr, &block) : VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  if (code == VK_ERROR_OUT_OF_DEVICE_MEMORY || code == VK_ERROR_OUT_OF_HOST_MEMORY) {
+    throw Error(
+        fmt::format("{} ({}): the {} take {:.0f} MiB, but {:.0f} of the device's {:.0f} MiB are in "
+                    "use{}",
+                    this->info().id, this->info().name, what, mebibytes(bytes), mebibytes(*allocated_),
+                    mebibytes(this->info().memory_bytes), advice));
+  }
+  checkVk(code, "vkAllocateMemory");
+  result.memory_ = {*this, block, [](const VulkanContext& context, VkDeviceMemory freed) {
+                      context.api().vkFreeMemory(context.device(), freed, nullptr);
+                    }};
+  checkVk(api_.vkBindBufferMemory(device_, handle, block, 0), "vkBindBufferMemory");
+  if (memory == VulkanMemory::kDevice) {
+    auto of = vkStruct<VkBufferDeviceAddressInfo>(VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO);
+    of.buffer = handle;
+    result.address_ = api_.vkGetBufferDeviceAddress(device_, &of);
+  } else {
+    checkVk(api_.vkMapMemory(device_, block, 0, VK_WHOLE_SIZE, 0, &result.mapped_), "vkMapMemory");
+  }
+  result.bytes_ = bytes;
+  result.total_ = allocated_;
+  *allocated_ += bytes;
+  return result;
+}
+
+}  // namespace sightline

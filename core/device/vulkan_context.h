@@ -1,0 +1,125 @@
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/device/vulkan_devices.h"
+
+namespace sightline {
+
+class VulkanContext;
+
+/// Owns a Vulkan object of a device.
+template <typename Handle>
+class VulkanHandle {
+ public:
+  using Destroy = void (*)(const VulkanContext&, Handle);
+  VulkanHandle() = default;
+  VulkanHandle(const VulkanContext& context, Handle handle, Destroy destroy)
+      : context_(&context), handle_(handle), destroy_(destroy) {}
+  VulkanHandle(VulkanHandle&& other) noexcept { *this = std::move(other); }
+  VulkanHandle& operator=(VulkanHandle&& other) noexcept {
+    std::swap(context_, other.context_);
+    std::swap(handle_, other.handle_);
+    std::swap(destroy_, other.destroy_);
+    return *this;
+  }
+  ~VulkanHandle() {
+    if (handle_ != VK_NULL_HANDLE) destroy_(*context_, handle_);
+  }
+  Handle get() const { return handle_; }
+  const Handle* address() const { return &handle_; }
+
+ private:
+  const VulkanContext* context_ = nullptr;
+  Handle handle_ = VK_NULL_HANDLE;
+  Destroy destroy_ = nullptr;
+};
+
+/// Where a buffer lies.
+enum class VulkanMemory {
+  kDevice,    ///< device-local: everything that shaders work on
+  kUpload,    ///< host-visible, written by the host in one go
+  kReadback,  ///< host-visible and cached, read by the host
+};
+
+/// Memory with its buffer; empty by default. Outlives no context.
+class VulkanBuffer {
+ public:
+  VulkanBuffer() = default;
+  VulkanBuffer(VulkanBuffer&& other) noexcept { *this = std::move(other); }
+  VulkanBuffer& operator=(VulkanBuffer&& other) noexcept;
+  ~VulkanBuffer();
+  VkBuffer get() const { return buffer_.get(); }
+  uint64_t bytes() const { return bytes_; }
+  /// For shaders and for the building of acceleration structures.
+  VkDeviceAddress address() const { return address_; }
+  /// kUpload and kReadback only; coherent.
+  void* mapped() const { return mapped_; }
+
+ private:
+  friend class VulkanContext;
+  VulkanHandle<VkDeviceMemory> memory_;
+  VulkanHandle<VkBuffer> buffer_;  // goes first
+  uint64_t bytes_ = 0;
+  VkDeviceAddress address_ = 0;
+  void* mapped_ = nullptr;
+  std::shared_ptr<uint64_t> total_;  ///< of the context: bytes in all its buffers
+};
+
+/// What we need to know of a device's limits.
+struct VulkanLimits {
+  uint64_t allocation_bytes = 0;  ///< largest allocation and buffer
+  uint64_t part_triangles = 0;    ///< of a bottom-level acceleration structure
+  uint32_t scratch_alignment = 0;
+  uint32_t launch_rays = 0;      ///< of one trace command
+  uint32_t launch_groups = 0;    ///< of one dispatch
+  uint32_t handle_bytes = 0;     ///< shader group handle
+  uint32_t table_alignment = 0;  ///< of the parts of a shader binding table
+};
+
+/// A device with its queues. Not thread-safe. Everything throws Error with the name of the call that failed.
+class VulkanContext {
+ public:
+  /// selector: as of selectVulkanDevice. ray_queries: use them even where there are ray tracing pipelines.
+  VulkanContext(const std::string& selector, bool ray_queries);
+  VulkanContext(const VulkanContext&) = delete;
+  VulkanContext& operator=(const VulkanContext&) = delete;
+  ~VulkanContext();
+
+  const VulkanApi& api() const { return api_; }
+  VkDevice device() const { return device_; }
+  const DeviceInfo& info() const { return choice_.info; }
+  const VulkanLimits& limits() const { return limits_; }
+  bool usesPipelines() const { return uses_pipelines_; }
+  uint64_t allocatedBytes() const { return *allocated_; }
+
+  VkQueue queue() const { return queue_; }
+  uint32_t queueFamily() const { return families_.front(); }
+  /// A queue of a family that only copies, where there is one, else the same as queue().
+  VkQueue transferQueue() const { return transfer_queue_; }
+  uint32_t transferFamily() const { return families_.back(); }
+
+  /// what: for the message when it does not fit ("triangles of the scene"). 0 bytes: a small dummy.
+  VulkanBuffer buffer(uint64_t bytes, const char* what, VulkanMemory memory = VulkanMemory::kDevice) const;
+
+ private:
+  void createDevice();
+  void readLimits();
+  uint32_t memoryType(uint32_t allowed, VulkanMemory memory) const;
+
+  VulkanInstance instance_;
+  VulkanApi api_;
+  VulkanDeviceChoice choice_;
+  bool uses_pipelines_;
+  VkPhysicalDeviceMemoryProperties memory_{};
+  VulkanLimits limits_;
+  std::vector<uint32_t> families_;  ///< one or two: of queue and transfer queue
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE, transfer_queue_ = VK_NULL_HANDLE;
+  std::shared_ptr<uint64_t> allocated_ = std::make_shared<uint64_t>(0);
+};
+
+}  // namespace sightline

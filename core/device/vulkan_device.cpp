@@ -1,0 +1,262 @@
+#include "core/device/vulkan_device.h"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+
+#include "core/device/vulkan_scene.h"
+#include "core/device/vulkan_set.h"
+#include "core/gvs/random_segment.h"
+#include "core/shared/border.h"
+#include "core/shared/reverse.h"
+
+namespace sightline {
+namespace {
+
+/// Rays of one launch of traceRays: bounds the buffers.
+constexpr size_t kRayChunk = 1u << 20;
+/// Work items of a group with ray queries, if the options name no other.
+constexpr uint32_t kGroup = 64;
+
+class VulkanDevice final : public Device {
+ public:
+  VulkanDevice(const std::string& selector, const Scene& scene, const Bvh& bvh, const DeviceOptions& options)
+      : context_(selector, options.ray_queries),
+        runner_(context_),
+        launch_(runner_.launch),
+        group_(options.work_group_size > 0 ? options.work_group_size : kGroup),
+        triangle_count_(static_cast<uint32_t>(scene.triangles.size())),
+        scene_(uploadVulkanScene(context_, scene, bvh, options.part_triangles)),
+        set_(context_, runner_, triangle_count_, wantsHash(options)) {
+    scene_.describe(launch_);
+    count_ = VulkanStage::list(context_, "count_bits");
+    sum_ = VulkanStage::list(context_, "sum_blocks");
+    write_ = VulkanStage::list(context_, "write_indices");
+    append_ = VulkanStage::list(context_, "append_entries");
+    contained_ = VulkanStage::list(context_, "insert_contained");
+    faces_ = context_.buffer(6 * sizeof(Face), "faces of the view cell");
+    launch_.faces = faces_.address();
+    reserveEntries(1u << 16);
+  }
+
+  DeviceInfo info() const override { return context_.info(); }
+
+  void beginCell(std::span<const Face> faces, const StageParams& params) override {
+    runner_.commands.update(faces_, faces.data(), faces.size_bytes());
+    launch_.params = params;
+    launch_.items_before = 0;
+    set_.clear();
+    segments_.clear();
+    size_ = discontinuities_ = 0;
+    rays_ = 0;
+  }
+
+  void traceRandom(const RandomSegment& segment) override {
+    segments_.push_back(segment);
+    launch_.segment = segment;
+    launch_.shifts = launch_.params.shifts;
+    const auto slots = static_cast<uint32_t>(slotCount(segment));
+    traceUntilItFits([&] { runner_.run(tracing(random_, "trace_random"), slots); });
+  }
+
+  uint32_t traceBorder(uint32_t first, uint32_t count) override {
+    launch_.items_before += discontinuities_;
+    launch_.border_first = first;
+    const uint32_t total = count * borderRayCount(launch_.params);
+    const uint32_t words = (total + 31) / 32;
+    reserve(border_hits_, launch_.border_hits, uint64_t(total) * 4, "hits of border rays");
+    reserve(bits_, launch_.bits, uint64_t(words) * 4, "bits of discontinuities");
+    runner_.commands.fill(bits_, 0, uint64_t(words) * 4);
+    discontinuities_ = traceUntilItFits([&] {
+      runner_.run(tracing(border_, "trace_border"), total);
+      countBits(bits_, words);
+    });
+    writeIndices(discontinuities_, items_, launch_.discontinuities, "list of discontinuities");
+    return discontinuities_;
+  }
+
+  void traceReverse(uint32_t first, uint32_t count) override {
+    launch_.reverse_first = first;
+    const uint32_t total = count * reverseRayCount(launch_.params);
+    traceUntilItFits([&] { runner_.run(tracing(reverse_, "trace_reverse"), total); });
+  }
+
+  uint32_t collect(uint32_t stage) override {
+    countBits(set_.fresh(), set_.freshWords());
+    const uint32_t found = runner_.takeCounts().listed;
+    if (found > 0) {
+      writeIndices(found, new_ids_, launch_.indices, "list of new triangles");
+      reserveEntries(size_ + found);
+      reserve(segment_buffer_, launch_.segments, segments_.size() * sizeof(RandomSegment), "random segments");
+      writeSegments();
+      launch_.segment_count = static_cast<uint32_t>(segments_.size());
+      launch_.stage = stage;
+      launch_.list_end = size_;
+      runner_.run(append_, found);
+      size_ += found;
+      set_.fit(size_);
+    }
+    segments_.clear();
+    return found;
+  }
+
+  void insertContained(std::span<const uint32_t> triangles) override {
+    if (triangles.empty()) return;
+    const auto count = static_cast<uint32_t>(triangles.size());
+    reserveEntries(size_ + count);
+    set_.fit(size_ + count);
+    reserve(new_ids_, launch_.indices, triangles.size_bytes(), "list of contained triangles");
+    runner_.commands.finish();
+    VulkanUpload upload(context_);
+    upload.write(new_ids_, triangles.data(), triangles.size_bytes());
+    upload.finish();
+    launch_.list_end = size_;
+    traceUntilItFits([&] { runner_.run(contained_, count); });
+    size_ += count;
+  }
+
+  uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {
+    launch_.segment = segment;
+    launch_.shifts = shifts;
+    runner_.run(tracing(missing_, "count_missing"), static_cast<uint32_t>(slotCount(segment)));
+    const VulkanCounts counts = runner_.takeCounts();
+    rays_ += counts.rays;
+    return counts.missing;
+  }
+
+  DeviceCounters counters() override { return {rays_, context_.allocatedBytes(), set_.capacity() > 0}; }
+
+  std::vector<PvsEntry> readPvs() override {
+    std::vector<PvsEntry> entries(size_);
+    read(entries_, entries.data(), entries.size() * sizeof(PvsEntry));
+    return entries;
+  }
+
+  void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override {
+    const size_t chunk = std::min(kRayChunk, rays.size());
+    const VulkanBuffer input = context_.buffer(chunk * sizeof(Ray), "rays");
+    const VulkanBuffer output = context_.buffer(chunk * sizeof(Hit), "hits");
+    launch_.rays = input.address();
+    launch_.hits = output.address();
+    VulkanUpload upload(context_);
+    for (size_t first = 0; first < rays.size(); first += chunk) {
+      const auto count = static_cast<uint32_t>(std::min(chunk, rays.size() - first));
+      upload.write(input, &rays[first], count * sizeof(Ray));
+      upload.finish();
+      runner_.run(tracing(rays_stage_, "trace_rays"), count);
+      read(output, &hits[first], count * sizeof(Hit));
+    }
+  }
+
+ private:
+  bool wantsHash(const DeviceOptions& options) const {
+    if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
+    const uint64_t budget =
+        options.memory_budget_bytes > 0 ? options.memory_budget_bytes : info().memory_bytes;
+    const uint64_t array = uint64_t(triangle_count_) * 4;
+    return array > context_.limits().allocation_bytes || context_.allocatedBytes() + array > budget;
+  }
+
+  /// The stage, made when it is first needed: drivers take up to a second to compile one.
+  const VulkanStage& tracing(std::optional<VulkanStage>& stage, const char* name) {
+    if (!stage) stage = VulkanStage::tracing(context_, name, group_);
+    return *stage;
+  }
+
+  /// Runs a stage, again with a larger set as long as it was full (insertion is idempotent), and counts the
+  /// rays of one full run. Returns the bits that it listed.
+  uint32_t traceUntilItFits(auto&& stage) {
+    for (;;) {
+      stage();
+      const VulkanCounts counts = runner_.takeCounts();
+      if (!counts.overflow) {
+        rays_ += counts.rays;
+        return counts.listed;
+      }
+      set_.grow(4);
+    }
+  }
+
+  /// Makes a buffer larger if needed (contents are lost) and puts its address into the launch.
+  void reserve(VulkanBuffer& buffer, uint64& address, uint64_t bytes, const char* what) {
+    if (buffer.bytes() < bytes || buffer.get() == VK_NULL_HANDLE) {
+      runner_.commands.finish();
+      buffer = VulkanBuffer();
+      buffer = context_.buffer(bytes, what);
+    }
+    address = buffer.address();
+  }
+
+  /// Counts the bits, block by block; the counts' total is VulkanCounts::listed.
+  void countBits(const VulkanBuffer& words, uint32_t word_count) {
+    launch_.words = words.address();
+    launch_.word_count = word_count;
+    launch_.block_count = (word_count + kBlockWords - 1) / kBlockWords;
+    reserve(block_counts_, launch_.block_counts, uint64_t(launch_.block_count) * 4, "counts of bits");
+    runner_.run(count_, launch_.block_count);
+    runner_.run(sum_, kSumItems);
+  }
+
+  /// Writes the indices of the bits counted last, ascending, and clears the bits.
+  void writeIndices(uint32_t total, VulkanBuffer& indices, uint64& address, const char* what) {
+    if (total == 0) return;
+    reserve(indices, address, uint64_t(total) * 4, what);
+    launch_.indices = indices.address();
+    runner_.run(write_, launch_.block_count);
+  }
+
+  void writeSegments() {
+    constexpr size_t kPiece = 65536 / sizeof(RandomSegment);
+    for (size_t first = 0; first < segments_.size(); first += kPiece) {
+      const size_t count = std::min(kPiece, segments_.size() - first);
+      runner_.commands.update(segment_buffer_, &segments_[first], count * sizeof(RandomSegment),
+                              first * sizeof(RandomSegment));
+    }
+  }
+
+  void read(const VulkanBuffer& buffer, void* target, uint64_t bytes) {
+    if (bytes == 0) return;
+    const VulkanBuffer staging = context_.buffer(bytes, "staging memory", VulkanMemory::kReadback);
+    runner_.commands.copy(buffer, staging, bytes);
+    runner_.takeCounts();
+    std::memcpy(target, staging.mapped(), bytes);
+  }
+
+  /// Makes room for `count` entries of the list, at least doubling it.
+  void reserveEntries(uint32_t count) {
+    if (count <= entry_capacity_) return;
+    entry_capacity_ = static_cast<uint32_t>(std::min<uint64_t>(
+        std::max<uint64_t>(count, uint64_t(entry_capacity_) * 2), std::max(count, triangle_count_)));
+    VulkanBuffer larger =
+        context_.buffer(uint64_t(entry_capacity_) * sizeof(PvsEntry), "list of visible triangles");
+    runner_.commands.copy(entries_, larger, uint64_t(size_) * sizeof(PvsEntry));
+    runner_.commands.finish();
+    entries_ = std::move(larger);
+    launch_.entries = entries_.address();
+  }
+
+  VulkanContext context_;
+  VulkanRunner runner_;
+  VulkanLaunch& launch_;
+  uint32_t group_;
+  uint32_t triangle_count_;
+  VulkanScene scene_;
+  VulkanSet set_;
+  VulkanBuffer faces_, entries_, segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_;
+  VulkanStage count_, sum_, write_, append_, contained_;
+  std::optional<VulkanStage> random_, missing_, border_, reverse_, rays_stage_;
+  std::vector<RandomSegment> segments_;  ///< of the batch
+  uint32_t entry_capacity_ = 0;
+  uint32_t size_ = 0;             ///< entries of the list
+  uint32_t discontinuities_ = 0;  ///< of the last traceBorder
+  uint64_t rays_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> makeVulkanDevice(const std::string& selector, const Scene& scene, const Bvh& bvh,
+                                         const DeviceOptions& options) {
+  return std::make_unique<VulkanDevice>(selector, scene, bvh, options);
+}
+
+}  // namespace sightline

@@ -1,0 +1,35 @@
+#include "core/device/vulkan_runner.h"
+
+#include <numeric>
+
+namespace sightline {
+
+VulkanRunner::VulkanRunner(const VulkanContext& context)
+    : commands(context, context.queue(), context.queueFamily()),
+      launch_buffer_(context.buffer(sizeof(VulkanLaunch), "launch")),
+      counters_(context.buffer(kCounterWords * 4, "counters")),
+      readback_(context.buffer(kCounterWords * 4, "counters", VulkanMemory::kReadback)) {
+  launch.counters = counters_.address();
+  commands.fill(counters_, 0, kCounterWords * 4);
+}
+
+void VulkanRunner::run(const VulkanStage& stage, uint32_t count) {
+  if (count == 0) return;
+  commands.update(launch_buffer_, &launch, sizeof launch);
+  commands.run(stage, launch_buffer_, count);
+}
+
+VulkanCounts VulkanRunner::takeCounts() {
+  commands.copy(counters_, readback_, kCounterWords * 4);
+  commands.fill(counters_, 0, kCounterWords * 4);
+  commands.finish();
+  const auto* words = static_cast<const uint32_t*>(readback_.mapped());
+  VulkanCounts counts;
+  counts.rays = std::accumulate(words, words + kRayCounters, uint64_t(0));
+  counts.missing = words[kMissingCounter];
+  counts.overflow = words[kOverflowCounter] != 0;
+  counts.listed = words[kListCounter];
+  return counts;
+}
+
+}  // namespace sightline

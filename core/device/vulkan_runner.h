@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+
+#include "core/device/vulkan_commands.h"
+#include "vk_shaders/launch.h"
+
+namespace sightline {
+
+/// What launches counted.
+struct VulkanCounts {
+  uint64_t rays = 0;
+  uint32_t missing = 0;   ///< rays that hit something outside the set
+  uint32_t listed = 0;    ///< bits counted by sum_blocks
+  bool overflow = false;  ///< the hash set was full
+};
+
+/// Runs stages on a VulkanLaunch that the host changes between them, and reads what they count.
+class VulkanRunner {
+ public:
+  explicit VulkanRunner(const VulkanContext& context);
+
+  VulkanLaunch launch{};
+  VulkanCommands commands;
+
+  /// Records the stage over `count` work items with the launch as it is now.
+  void run(const VulkanStage& stage, uint32_t count);
+  /// Runs everything recorded, and sets the counters back to 0.
+  VulkanCounts takeCounts();
+
+ private:
+  VulkanBuffer launch_buffer_, counters_, readback_;
+};
+
+}  // namespace sightline

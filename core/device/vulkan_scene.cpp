@@ -1,0 +1,66 @@
+#include "core/device/vulkan_scene.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/device/trace_layout.h"
+
+namespace sightline {
+namespace {
+
+constexpr uint64_t kCornerBytes = 36;
+
+void packCorners(const Scene& scene, const uint32_t* ids, float* corners, size_t count) {
+  tbb::parallel_for(size_t{0}, count, [&](size_t i) {
+    const glm::uvec3 triangle = scene.triangles[ids[i]];
+    for (int corner = 0; corner < 3; ++corner) {
+      for (int axis = 0; axis < 3; ++axis) {
+        corners[9 * i + 3 * corner + axis] = scene.positions[triangle[corner]][axis];
+      }
+    }
+  });
+}
+
+}  // namespace
+
+void VulkanScene::describe(VulkanLaunch& launch) const {
+  launch.tlas = tree.top.address;
+  launch.part_starts = part_starts.address();
+  launch.leaf_ids = leaf_ids.address();
+  launch.leaf_of = leaf_of.address();
+  launch.corners = corners.address();
+}
+
+VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, const Bvh& bvh,
+                              uint32_t part_limit) {
+  checkTraceable(bvh);
+  const auto count = static_cast<uint32_t>(scene.triangles.size());
+  const uint32_t possible = largestPart(context, count);
+  const LeafParts leaves =
+      splitIntoParts(bvh, count, part_limit > 0 ? std::min(part_limit, possible) : possible);
+
+  VulkanScene result;
+  VulkanUpload upload(context);
+  result.corners = context.buffer(count * kCornerBytes, "triangles of the scene");
+  upload.write(result.corners, count * kCornerBytes, kCornerBytes,
+               [&](void* piece, uint64_t first, uint64_t bytes) {
+                 packCorners(scene, &leaves.ids[first / kCornerBytes], static_cast<float*>(piece),
+                             bytes / kCornerBytes);
+               });
+  result.leaf_ids = context.buffer(uint64_t(count) * 4, "ids of the triangles");
+  upload.write(result.leaf_ids, leaves.ids.data(), uint64_t(count) * 4);
+  std::vector<uint32_t> table(count);
+  for (uint32_t leaf = 0; leaf < count; ++leaf) table[leaves.ids[leaf]] = leaf;
+  result.leaf_of = context.buffer(uint64_t(count) * 4, "index of triangles");
+  upload.write(result.leaf_of, table.data(), uint64_t(count) * 4);
+  table.clear();
+  for (const LeafPart& part : leaves.parts) table.push_back(part.first);
+  result.part_starts = context.buffer(table.size() * 4, "parts of the scene");
+  upload.write(result.part_starts, table.data(), table.size() * 4);
+  upload.finish();
+  result.tree = buildVulkanTree(context, result.corners, leaves.parts);
+  return result;
+}
+
+}  // namespace sightline

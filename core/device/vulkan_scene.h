@@ -1,0 +1,23 @@
+#pragma once
+#include "core/device/vulkan_tree.h"
+#include "core/scene/scene.h"
+#include "vk_shaders/launch.h"
+
+namespace sightline {
+
+/// A scene on a Vulkan device: corners in leaf order, the maps between leaves and ids, and the driver's trees
+/// over them.
+struct VulkanScene {
+  VulkanBuffer corners, leaf_ids, leaf_of, part_starts;
+  VulkanTree tree;
+
+  /// Puts the addresses into a launch.
+  void describe(VulkanLaunch& launch) const;
+};
+
+/// Uploads in pieces, so that the host needs little memory besides scene and tree, and builds the trees.
+/// part_limit: triangles of a bottom-level structure at most, 0: as many as the device takes. Throws Error.
+VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, const Bvh& bvh,
+                              uint32_t part_limit);
+
+}  // namespace sightline

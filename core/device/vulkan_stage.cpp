@@ -1,0 +1,180 @@
+#include "core/device/vulkan_stage.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/device/vulkan_commands.h"
+#include "vk_shaders/shaders.h"
+
+namespace sightline {
+namespace {
+
+/// What the shaders get by push constants (vk_shaders/state.glsl).
+struct Push {
+  VkDeviceAddress launch;
+  uint32_t first_item;
+  uint32_t item_end;
+};
+
+VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name) {
+  const std::span<const uint32_t> code = shaderCode(name);
+  auto info = vkStruct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
+  info.codeSize = code.size_bytes();
+  info.pCode = code.data();
+  VkShaderModule module = VK_NULL_HANDLE;
+  checkVk(context.api().vkCreateShaderModule(context.device(), &info, nullptr, &module),
+          "vkCreateShaderModule");
+  return {context, module, [](const VulkanContext& c, VkShaderModule handle) {
+            c.api().vkDestroyShaderModule(c.device(), handle, nullptr);
+          }};
+}
+
+VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderModule module) {
+  auto info = vkStruct<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
+  info.stage = stage;
+  info.module = module;
+  info.pName = "main";
+  return info;
+}
+
+VkRayTracingShaderGroupCreateInfoKHR groupInfo(VkRayTracingShaderGroupTypeKHR type, uint32_t general,
+                                               uint32_t closest_hit) {
+  auto info = vkStruct<VkRayTracingShaderGroupCreateInfoKHR>(
+      VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR);
+  info.type = type;
+  info.generalShader = general;
+  info.closestHitShader = closest_hit;
+  info.anyHitShader = info.intersectionShader = VK_SHADER_UNUSED_KHR;
+  return info;
+}
+
+uint64_t alignUp(uint64_t value, uint64_t alignment) {
+  return (value + alignment - 1) / alignment * alignment;
+}
+
+void destroyPipeline(const VulkanContext& context, VkPipeline pipeline) {
+  context.api().vkDestroyPipeline(context.device(), pipeline, nullptr);
+}
+
+}  // namespace
+
+VulkanStage VulkanStage::tracing(const VulkanContext& context, const std::string& name, uint32_t group_size) {
+  VulkanStage stage;
+  stage.context_ = &context;
+  if (context.usesPipelines()) {
+    stage.createLayout(VK_SHADER_STAGE_RAYGEN_BIT_KHR);
+    stage.createRayPipeline(name + ".rgen");
+  } else {
+    stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
+    stage.createPipeline(name + ".comp", group_size);
+  }
+  return stage;
+}
+
+VulkanStage VulkanStage::list(const VulkanContext& context, const std::string& name) {
+  VulkanStage stage;
+  stage.context_ = &context;
+  stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
+  stage.createPipeline(name + ".comp", 64);
+  return stage;
+}
+
+void VulkanStage::createLayout(VkShaderStageFlags stages) {
+  stages_ = stages;
+  const VkPushConstantRange range{stages, 0, sizeof(Push)};
+  auto info = vkStruct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &range;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  checkVk(context_->api().vkCreatePipelineLayout(context_->device(), &info, nullptr, &layout),
+          "vkCreatePipelineLayout");
+  layout_ = {*context_, layout, [](const VulkanContext& c, VkPipelineLayout handle) {
+               c.api().vkDestroyPipelineLayout(c.device(), handle, nullptr);
+             }};
+}
+
+void VulkanStage::createPipeline(const std::string& name, uint32_t group_size) {
+  group_size_ = group_size;
+  const VulkanHandle<VkShaderModule> module = shaderModule(*context_, name);
+  const VkSpecializationMapEntry entry{0, 0, sizeof group_size};
+  const VkSpecializationInfo constants{1, &entry, sizeof group_size, &group_size_};
+  auto info = vkStruct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+  info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
+  info.stage.pSpecializationInfo = &constants;
+  info.layout = layout_.get();
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  checkVk(context_->api().vkCreateComputePipelines(context_->device(), VK_NULL_HANDLE, 1, &info, nullptr,
+                                                   &pipeline),
+          ("vkCreateComputePipelines " + name).c_str());
+  pipeline_ = {*context_, pipeline, destroyPipeline};
+}
+
+void VulkanStage::createRayPipeline(const std::string& name) {
+  const VulkanApi& api = context_->api();
+  const VulkanHandle<VkShaderModule> generation = shaderModule(*context_, name);
+  const VulkanHandle<VkShaderModule> miss = shaderModule(*context_, "nothing.rmiss");
+  const VulkanHandle<VkShaderModule> hit = shaderModule(*context_, "nearest.rchit");
+  const VkPipelineShaderStageCreateInfo stages[] = {
+      stageInfo(VK_SHADER_STAGE_RAYGEN_BIT_KHR, generation.get()),
+      stageInfo(VK_SHADER_STAGE_MISS_BIT_KHR, miss.get()),
+      stageInfo(VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, hit.get())};
+  const VkRayTracingShaderGroupCreateInfoKHR groups[] = {
+      groupInfo(VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR, 0, VK_SHADER_UNUSED_KHR),
+      groupInfo(VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR, 1, VK_SHADER_UNUSED_KHR),
+      groupInfo(VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR, VK_SHADER_UNUSED_KHR, 2)};
+  auto info =
+      vkStruct<VkRayTracingPipelineCreateInfoKHR>(VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR);
+  info.stageCount = info.groupCount = 3;
+  info.pStages = stages;
+  info.pGroups = groups;
+  info.maxPipelineRayRecursionDepth = 1;
+  info.layout = layout_.get();
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  checkVk(api.vkCreateRayTracingPipelinesKHR(context_->device(), VK_NULL_HANDLE, VK_NULL_HANDLE, 1, &info,
+                                             nullptr, &pipeline),
+          ("vkCreateRayTracingPipelinesKHR " + name).c_str());
+  pipeline_ = {*context_, pipeline, destroyPipeline};
+
+  // The table: one record a group, each at a multiple of the base alignment.
+  const VulkanLimits& limits = context_->limits();
+  table_stride_ = alignUp(limits.handle_bytes, limits.table_alignment);
+  std::vector<char> handles(3 * limits.handle_bytes), records(3 * table_stride_);
+  checkVk(api.vkGetRayTracingShaderGroupHandlesKHR(context_->device(), pipeline, 0, 3, handles.size(),
+                                                   handles.data()),
+          "vkGetRayTracingShaderGroupHandlesKHR");
+  for (size_t i = 0; i < 3; ++i) {
+    std::memcpy(&records[i * table_stride_], &handles[i * limits.handle_bytes], limits.handle_bytes);
+  }
+  table_ = context_->buffer(records.size() + limits.table_alignment, "shader binding table");
+  table_start_ = alignUp(table_.address(), limits.table_alignment);
+  VulkanCommands commands(*context_, context_->queue(), context_->queueFamily());
+  commands.update(table_, records.data(), records.size(), table_start_ - table_.address());
+  commands.finish();
+}
+
+void VulkanStage::record(VkCommandBuffer commands, VkDeviceAddress launch, uint32_t count) const {
+  const VulkanApi& api = context_->api();
+  const VulkanLimits& limits = context_->limits();
+  const bool pipelines = group_size_ == 0;
+  const uint64_t most = pipelines ? limits.launch_rays : uint64_t(limits.launch_groups) * group_size_;
+  api.vkCmdBindPipeline(commands,
+                        pipelines ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE,
+                        pipeline_.get());
+  for (uint64_t first = 0; first < count; first += most) {
+    const Push push{launch, static_cast<uint32_t>(first), count};
+    api.vkCmdPushConstants(commands, layout_.get(), stages_, 0, sizeof push, &push);
+    const auto items = static_cast<uint32_t>(std::min<uint64_t>(most, count - first));
+    if (pipelines) {
+      const uint64_t stride = table_stride_;
+      const VkStridedDeviceAddressRegionKHR generation{table_start_, stride, stride};
+      const VkStridedDeviceAddressRegionKHR miss{table_start_ + stride, stride, stride};
+      const VkStridedDeviceAddressRegionKHR hit{table_start_ + 2 * stride, stride, stride};
+      const VkStridedDeviceAddressRegionKHR callable{};
+      api.vkCmdTraceRaysKHR(commands, &generation, &miss, &hit, &callable, items, 1, 1);
+    } else {
+      api.vkCmdDispatch(commands, (items + group_size_ - 1) / group_size_, 1, 1);
+    }
+  }
+}
+
+}  // namespace sightline

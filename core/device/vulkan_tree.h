@@ -1,0 +1,33 @@
+#pragma once
+#include "core/device/leaf_parts.h"
+#include "core/device/vulkan_commands.h"
+
+namespace sightline {
+
+/// An acceleration structure and its memory.
+struct VulkanStructure {
+  VulkanBuffer memory;
+  VulkanHandle<VkAccelerationStructureKHR> handle;
+  VkDeviceAddress address = 0;
+};
+
+/// The driver's acceleration structures over a scene: one bottom level a part, compacted, and one instance of
+/// each in the top level, whose custom index is the number of its part.
+struct VulkanTree {
+  std::vector<VulkanStructure> parts;
+  VulkanStructure top;
+  VulkanBuffer instances;
+  uint64_t bytes = 0;        ///< of all structures, after compaction
+  uint64_t built_bytes = 0;  ///< the same before compaction
+  double build_seconds = 0;
+};
+
+/// Triangles that a bottom-level structure may have: the device's limit, or fewer where the structure over as
+/// many as `triangles` would not fit one allocation.
+uint32_t largestPart(const VulkanContext& context, uint32_t triangles);
+
+/// corners: nine floats a triangle, in leaf order; must be on the device.
+VulkanTree buildVulkanTree(const VulkanContext& context, const VulkanBuffer& corners,
+                           const std::vector<LeafPart>& parts);
+
+}  // namespace sightline
