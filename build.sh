@@ -7,15 +7,21 @@ root=$(cd -- "$(dirname -- "${BASH_SOURCE[0]}")" && pwd -P)
 readonly root
 readonly build="$root/build"
 
-# Compiler and build, libraries, OpenCL with PoCL (OpenCL on the processor, for machines without a GPU), and what
-# only the tests and bench_trace use.
+# Compiler and build, libraries, OpenCL with PoCL (OpenCL on the processor, for machines without a GPU), Vulkan, and
+# what only the tests and bench_trace use.
 readonly packages=(
   cmake g++ ninja-build pkg-config
   libcgal-dev libcli11-dev libfmt-dev libglm-dev libmeshoptimizer-dev libpng-dev libtbb-dev
   libtinyobjloader-dev libxxhash-dev libzstd-dev nlohmann-json3-dev
   ocl-icd-opencl-dev opencl-clhpp-headers opencl-headers pocl-opencl-icd
-  glslang-tools libembree-dev libgtest-dev spirv-tools
+  glslang-tools libvulkan-dev
+  libembree-dev libgtest-dev spirv-tools
 )
+
+# Only the tests need these: Vulkan's validation layer, and a Vulkan driver that traces rays on any processor.
+# Debian 12's own Mesa has none yet, so it comes from bookworm-backports.
+readonly test_packages=(vulkan-validationlayers mesa-vulkan-drivers)
+readonly mesa_version=25
 
 usage() {
   cat <<'TEXT'
@@ -36,37 +42,94 @@ fail() {
   exit 1
 }
 
-# Prints those of the given packages that are not installed.
-missingPackages() {
-  local package state
-  for package in "$@"; do
-    state=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null) || state=
-    [[ $state == installed ]] || printf '%s\n' "$package"
-  done
+# Whether a package is installed, mesa-vulkan-drivers in a version that can trace rays.
+isInstalled() {
+  local state version
+  state=$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null) || state=
+  [[ $state == installed ]] || return 1
+  [[ $1 == mesa-vulkan-drivers ]] || return 0
+  version=$(dpkg-query -W -f='${Version}' "$1")
+  dpkg --compare-versions "$version" ge "$mesa_version"
 }
 
+# Prints those of the given packages that are not installed.
+missingPackages() {
+  local package
+  for package in "$@"; do isInstalled "$package" || printf '%s\n' "$package"; done
+}
+
+# Writes the machine's package sources and, beside them, the release's backports into a folder for apt-get. They are
+# those of the release itself (mirror, keys, options) with another suite, whichever of apt's two formats they have.
+writeSourcesWithBackports() {
+  local release=$1 folder=$2 sourceparts='' sourcelist=''
+  eval "$(apt-config shell sourceparts Dir::Etc::sourceparts/d sourcelist Dir::Etc::sourcelist/f)"
+  rm -rf "$folder"
+  mkdir -p "$folder"
+  local sources=() lists=()
+  mapfile -t sources < <(find -L "$sourceparts" -maxdepth 1 -name '*.sources' 2>/dev/null)
+  mapfile -t lists < <(find -L "$sourceparts" -maxdepth 1 -name '*.list' 2>/dev/null)
+  ((${#sources[@]} + ${#lists[@]} == 0)) || cp -L "${sources[@]}" "${lists[@]}" "$folder/"
+  [[ ! -f $sourcelist ]] || lists+=("$sourcelist")
+  ((${#sources[@]} == 0)) || awk -v release="$release" 'BEGIN { RS = ""; FS = "\n" }
+    {
+      text = ""; binary = named = 0; enabled = 1
+      for (i = 1; i <= NF; ++i) {
+        line = $i; count = split(line, word, /[ \t:]+/)
+        for (k = 2; k <= count; ++k) {
+          if (word[1] == "Types" && word[k] == "deb") binary = 1
+          if (word[1] == "Suites" && word[k] == release) named = 1
+          if (word[1] == "Enabled" && word[k] == "no") enabled = 0
+        }
+        if (word[1] == "Types") line = "Types: deb"
+        if (word[1] == "Suites") line = "Suites: " release "-backports"
+        if (word[1] == "Components") line = "Components: main"
+        text = text line "\n"
+      }
+      if (binary && named && enabled) { printf "%s", text; exit }
+    }' "${sources[@]}" >"$folder/sightline-backports.sources"
+  [[ ! -s $folder/sightline-backports.sources ]] || return 0
+  rm -f "$folder/sightline-backports.sources"
+  ((${#lists[@]} == 0)) || awk -v release="$release" '
+    $0 ~ "^[ \t]*deb[ \t]+(\\[[^]]*\\][ \t]*)?[^ \t]+[ \t]+" release "[ \t]" {
+      sub("[ \t]" release "[ \t].*$", " " release "-backports main"); print; exit
+    }' "${lists[@]}" >"$folder/sightline-backports.list"
+  [[ -s $folder/sightline-backports.list ]] ||
+    fail "apt's sources do not name $release, so that its backports cannot be found: install mesa-vulkan-drivers" \
+         "$mesa_version or later by hand"
+}
+
+# Installs what is missing of the given packages.
 installPackages() {
   mkdir -p "$build" 2>/dev/null || fail "cannot create $build: put this project into a folder of yours"
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
-    fail "this is not a Debian system (no apt-get). Install what these Debian 12 packages hold: ${packages[*]};" \
+    fail "this is not a Debian system (no apt-get). Install what these Debian 12 packages hold: $*;" \
          "then run: cmake --preset release && cmake --build --preset release"
   fi
   local missing
-  mapfile -t missing < <(missingPackages "${packages[@]}")
+  mapfile -t missing < <(missingPackages "$@")
   ((${#missing[@]} > 0)) || return 0
 
-  local as_root=()
+  local as_root=() release='' options=() wanted=("${missing[@]}")
+  # shellcheck source=/dev/null
+  release=$(. /etc/os-release && printf '%s' "${VERSION_CODENAME:-}")
   local by_hand="missing Debian packages; install them as root, then run this again:
   apt-get update && apt-get install --no-install-recommends ${missing[*]}"
+  if [[ $release == bookworm && " ${missing[*]} " == *" mesa-vulkan-drivers "* ]]; then
+    by_hand+="
+  (mesa-vulkan-drivers from $release-backports: version $mesa_version or later)"
+    writeSourcesWithBackports "$release" "$build/apt-sources"
+    options=(-o Dir::Etc::SourceParts="$build/apt-sources")
+    wanted=("${missing[@]/#mesa-vulkan-drivers/mesa-vulkan-drivers/$release-backports}")
+  fi
   if ((EUID != 0)); then
     command -v sudo >/dev/null || fail "neither root nor sudo here, and $by_hand"
     as_root=(sudo)
   fi
   say "installing Debian packages (log: $build/apt.log): ${missing[*]}"
   local apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -o DPkg::Lock::Timeout=300
-             -o Dpkg::Use-Pty=0)
+             -o Dpkg::Use-Pty=0 "${options[@]}")
   {
-    "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends "${missing[@]}"
+    "${apt[@]}" update && "${apt[@]}" install -y --no-install-recommends "${wanted[@]}"
   } >"$build/apt.log" 2>&1 || {
     tail -n 5 "$build/apt.log" >&2
     fail "apt-get failed, and $by_hand"
@@ -157,14 +220,15 @@ main() {
         usage >&2
         exit 2
       fi
-      installPackages
+      installPackages "${packages[@]}"
       prepareCaches
       buildTarget sightline
       runDemo "$@"
       ;;
     test)
-      installPackages
+      installPackages "${packages[@]}" "${test_packages[@]}"
       prepareCaches
+      export SIGHTLINE_REQUIRE_VULKAN=1  # there is a driver now: tests that find none fail
       buildTarget all
       runTests "$@"
       ;;

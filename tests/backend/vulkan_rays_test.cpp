@@ -1,0 +1,177 @@
+// The rays that the Vulkan shaders make, bit by bit those of the shared code in C++.
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <numeric>
+
+#include "core/device/cpu_tracer.h"
+#include "core/device/vulkan_runner.h"
+#include "core/device/vulkan_scene.h"
+#include "core/gvs/random_segment.h"
+#include "core/scene/generate.h"
+#include "core/scene/view_cell.h"
+#include "core/shared/border.h"
+#include "core/shared/random_ray.h"
+#include "core/shared/reverse.h"
+#include "tests/backend/trace_cases.h"
+#include "tests/support/bake_scene.h"
+#include "tests/support/vulkan.h"
+
+namespace sightline {
+namespace {
+
+testing::AssertionResult sameRay(const char*, const char*, const Ray& actual, const Ray& expected) {
+  if (std::memcmp(&actual, &expected, sizeof(Ray)) == 0) return testing::AssertionSuccess();
+  return testing::AssertionFailure() << "made   " << describeRay(actual) << "\nwanted "
+                                     << describeRay(expected);
+}
+
+class VulkanRays : public testing::Test {
+ protected:
+  void SetUp() override {
+    SL_SKIP_WITHOUT_VULKAN();
+    context_ = std::make_unique<VulkanContext>("vulkan", false);
+    runner_ = std::make_unique<VulkanRunner>(*context_);
+    on_device_ = uploadVulkanScene(*context_, scene_, bvh_, 0);
+    on_device_.describe(runner_->launch);
+    params_.counts = uvec4(7, 5, 11, faces_.size());
+    params_.shifts = uvec4(0x9e3779b9u, 12345678u, 99u, 1000007u);
+    params_.distances = vec4(1e-4f, 1e-5f, 1e-3f, 1e-4f);
+    runner_->launch.params = params_;
+    runner_->launch.shifts = params_.shifts;
+    runner_->launch.faces = put(faces_);
+  }
+
+  /// Uploads; returns the address.
+  template <typename T>
+  uint64_t put(const std::vector<T>& values) {
+    buffers_.push_back(context_->buffer(values.size() * sizeof(T), "test data"));
+    VulkanUpload upload(*context_);
+    upload.write(buffers_.back(), values.data(), values.size() * sizeof(T));
+    upload.finish();
+    return buffers_.back().address();
+  }
+
+  /// The rays of a stage as the shaders make them.
+  std::vector<Ray> make(uint32_t stage, uint32_t count) {
+    const uint64_t bytes = count * sizeof(Ray);
+    const VulkanBuffer rays = context_->buffer(bytes, "rays");
+    const VulkanBuffer staging = context_->buffer(bytes, "rays", VulkanMemory::kReadback);
+    const VulkanStage stage_rays = VulkanStage::list(*context_, "stage_rays");
+    runner_->launch.stage = stage;
+    runner_->launch.rays = rays.address();
+    runner_->run(stage_rays, count);
+    runner_->commands.copy(rays, staging, bytes);
+    runner_->takeCounts();
+    std::vector<Ray> result(count);
+    std::memcpy(result.data(), staging.mapped(), bytes);
+    return result;
+  }
+
+  Ray borderRayOf(const PvsEntry& entry, uint32_t k) const {
+    const uvec4 bits = entry.origin_triangle;
+    const vec3 origin(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z));
+    const uint32_t side = borderSide(k, params_);
+    const BorderEdge edge =
+        borderEdge(corner(bits.w, 0), corner(bits.w, 1), corner(bits.w, 2), side, origin, params_);
+    return borderRay(edge, k, origin, params_);
+  }
+
+  vec3 corner(uint32_t triangle, int i) const { return scene_.positions[scene_.triangles[triangle][i]]; }
+
+  const Scene scene_ = generateScene("bistro", 20'000, 3);
+  const ViewCell cell_ = generateCells("bistro", 20'000, 3).front();
+  const Bvh bvh_ = buildBvh(scene_.positions, scene_.triangles);
+  const std::vector<Face> faces_ = cellFaces(cell_);
+  StageParams params_{};
+  std::unique_ptr<VulkanContext> context_;
+  std::unique_ptr<VulkanRunner> runner_;
+  VulkanScene on_device_;
+  std::vector<VulkanBuffer> buffers_;
+};
+
+TEST_F(VulkanRays, Random) {
+  uint64_t rays = 0;
+  for (uint32_t f = 0; f < faces_.size(); ++f) {
+    const RandomSegment segment = makeRandomSegment(f, 5'000'000'000 + 7919 * f, 100'003, 1);
+    runner_->launch.segment = segment;
+    const auto slots = static_cast<uint32_t>(slotCount(segment));
+    const std::vector<Ray> made = make(kStageRandom, slots);
+    for (uint32_t slot = 0; slot < slots; ++slot) {
+      const uint32_t offset = slotOffset(segment, slot);
+      if (offset == kNoTriangle) continue;  // such a slot traces nothing
+      ASSERT_PRED_FORMAT2(sameRay, made[slot], offsetRay(segment, faces_[f], params_.shifts, offset))
+          << "face " << f << ", slot " << slot;
+      ++rays;
+    }
+  }
+  EXPECT_EQ(rays, faces_.size() * 100'003);
+}
+
+/// Border rays of what random rays hit, and of every kind of triangle from points beside, behind and on it.
+TEST_F(VulkanRays, BorderAndReverse) {
+  const CpuTracer tracer(scene_, bvh_);
+  std::vector<PvsEntry> entries;
+  const RandomSegment segment = makeRandomSegment(0, 0, 3000, 1);
+  for (uint32_t slot = 0; slot < slotCount(segment); ++slot) {
+    const Ray ray = offsetRay(segment, faces_[0], params_.shifts, slotOffset(segment, slot));
+    const Hit hit = tracer.trace(ray);
+    const uint32_t triangle =
+        hit.triangle != kNoTriangle ? hit.triangle : slot * 7919u % uint32_t(scene_.triangles.size());
+    entries.push_back({uvec4(floatBitsToUint(ray.origin.x), floatBitsToUint(ray.origin.y),
+                             floatBitsToUint(ray.origin.z), triangle),
+                       uvec4(0)});
+  }
+  const uint32_t per_entry = borderRayCount(params_);
+  const auto total = static_cast<uint32_t>(entries.size() * per_entry);
+  runner_->launch.entries = put(entries);
+  const std::vector<Ray> made = make(kStageBorder, total);
+  std::vector<Ray> border(total);
+  for (uint32_t i = 0; i < total; ++i) {
+    border[i] = borderRayOf(entries[i / per_entry], i % per_entry);
+    ASSERT_PRED_FORMAT2(sameRay, made[i], border[i]) << "border ray " << i;
+  }
+
+  // Reverse rays of every 29th border ray, as if it had met a discontinuity, with the occluder that it hit.
+  const LeafParts leaves = splitIntoParts(bvh_, uint32_t(scene_.triangles.size()), 0xffffffffu);
+  std::vector<uint32_t> leaf_of(leaves.ids.size());
+  for (uint32_t leaf = 0; leaf < leaves.ids.size(); ++leaf) leaf_of[leaves.ids[leaf]] = leaf;
+  std::vector<uint32_t> places, occluders(total, kNoTriangle), hit_leaves(total, kNoTriangle);
+  for (uint32_t i = 0; i < total; i += 29) {
+    places.push_back(i);
+    occluders[i] = tracer.trace(border[i]).triangle;
+    if (occluders[i] != kNoTriangle) hit_leaves[i] = leaf_of[occluders[i]];
+  }
+  runner_->launch.discontinuities = put(places);
+  runner_->launch.border_hits = put(hit_leaves);
+  runner_->launch.items_before = 0xfffffff0ull;  // running numbers past 32 bits
+  const uint32_t per_item = reverseRayCount(params_);
+  const auto reverse_total = static_cast<uint32_t>(places.size() * per_item);
+  const std::vector<Ray> reverse = make(kStageReverse, reverse_total);
+  uint32_t excluded = 0;
+  for (uint32_t i = 0; i < reverse_total; ++i) {
+    const uint32_t place = i / per_item, k = i % per_item;
+    const Ray& ray = border[places[place]];
+    const vec3 target = add3(xyz3(ray.origin), xyz3(ray.direction));
+    const uint64_t number = runner_->launch.items_before + place;
+    ReverseItem item{};
+    item.target = vec4(target, 0);
+    uint32_t mask = 0;
+    for (uint32_t f = 0; f < faces_.size(); ++f) mask |= uint32_t(faceLooksAt(faces_[f], target)) << f;
+    const uint32_t occluder = occluders[places[place]];
+    item.number = uvec4(uint32_t(number), uint32_t(number >> 32), mask, occluder != kNoTriangle);
+    if (occluder != kNoTriangle) {
+      item.a = vec4(corner(occluder, 0), 0);
+      item.b = vec4(corner(occluder, 1), 0);
+      item.c = vec4(corner(occluder, 2), 0);
+    }
+    const Ray expected = mask == 0 ? noRay() : reverseRay(item, faces_[reverseFace(item, k)], k, params_);
+    ASSERT_PRED_FORMAT2(sameRay, reverse[i], expected) << "reverse ray " << i;
+    excluded += !hasDirection(expected);
+  }
+  EXPECT_GT(excluded, 0u);
+  EXPECT_LT(excluded, reverse_total / 4 * 3);
+}
+
+}  // namespace
+}  // namespace sightline
