@@ -119,7 +119,7 @@ SL_FUNC vec3 borderPoint(BorderEdge edge, uint k, StageParams params) {
   if (place == 0u) return xyz3(edge.bisector);
   if (place == 1u) return xyz3(edge.start);
   if (place == params.counts.x + 2u) return xyz3(edge.end);
-  float t = slFloat(place - 1u) / slFloat(params.counts.x + 1u);
+  float t = slDivide(slFloat(place - 1u), slFloat(params.counts.x + 1u));
   return add3(scale3(xyz3(edge.start), 1.0f - t), scale3(xyz3(edge.end), t));
 }
 

@@ -52,9 +52,9 @@ SL_FUNC BoxRay boxRay(Ray ray, float scene_reach) {
   vec4 d = ray.direction;
   float padding = kBoxPadding * (max(fabs(o.x), max(fabs(o.y), fabs(o.z))) + scene_reach);
   float smallest = kSmallestSlope * max(fabs(d.x), max(fabs(d.y), fabs(d.z)));
-  float x = 1.0f / boundedSlope(d.x, smallest);
-  float y = 1.0f / boundedSlope(d.y, smallest);
-  float z = 1.0f / boundedSlope(d.z, smallest);
+  float x = slDivide(1.0f, boundedSlope(d.x, smallest));
+  float y = slDivide(1.0f, boundedSlope(d.y, smallest));
+  float z = slDivide(1.0f, boundedSlope(d.z, smallest));
   vec4 middle = vec4(-o.x * x, -o.y * y, -o.z * z, 0.0f);
   vec4 spread = vec4(padding * fabs(x), padding * fabs(y), padding * fabs(z), 0.0f);
   BoxRay result;

@@ -3,7 +3,7 @@
 // Rules of the dialect (docs/style in short): GLSL spelling, no pointers except SetRef and the macros
 // below, results by value, integer index arithmetic, no transcendental functions, floating-point
 // contraction off. vec3(...) always takes three arguments. Divisions and square roots must be correctly
-// rounded on every device.
+// rounded on every device: floats are divided by slDivide, since Vulkan promises 2.5 units in the last place.
 #ifndef SL_LANGUAGE_H
 #define SL_LANGUAGE_H
 
@@ -54,6 +54,7 @@ typedef struct SetRef {
 #define slUint(x) ((uint)(x))
 #define slUint64(x) ((uint64)(x))
 #define slFloat(x) ((float)(x))
+#define slDivide(a, b) ((a) / (b))
 
 #elif defined(__cplusplus)
 
@@ -84,6 +85,12 @@ inline uint64 slUint64(auto x) {
 }
 inline float slFloat(auto x) {
   return static_cast<float>(x);
+}
+inline float slDivide(float a, float b) {
+  return a / b;
+}
+inline double slDivide(double a, double b) {
+  return a / b;
 }
 inline uint slMulHigh(uint a, uint b) {
   return uint((uint64(a) * uint64(b)) >> 32);
@@ -137,6 +144,50 @@ inline uint slAtomicCas(uint& slot, uint expected, uint desired) {
 #define slUint(x) uint(x)
 #define slUint64(x) uint64_t(x)
 #define slFloat(x) float(x)
+
+// Vulkan promises division to 2.5 units in the last place and square roots to about 5; the following make the
+// correctly rounded result of them. The true result lies beyond the midpoint to the next float if a lies
+// beyond the midpoint times b (or squared): a product of at most 50 bits, exact in double. Not a division in
+// double: lavapipe's errs too much. Zero, subnormal, infinite and NaN results stay as they are.
+float slNeighbour(float positive, int steps) {
+  return uintBitsToFloat(uint(int(floatBitsToUint(positive)) + steps));
+}
+double slMidpoint(float positive, int steps) {
+  return 0.5lf * (double(positive) + double(slNeighbour(positive, steps)));
+}
+bool slIsNormal(float positive) {
+  return positive >= uintBitsToFloat(0x00800000u) && positive < uintBitsToFloat(0x7f7fffffu);
+}
+float slDivide(float a, float b) {
+  float quotient = a / b;
+  float size = abs(quotient);
+  for (int i = 0; i < 4 && slIsNormal(size); ++i) {
+    int steps = double(abs(a)) > slMidpoint(size, 1) * double(abs(b))    ? 1
+                : double(abs(a)) < slMidpoint(size, -1) * double(abs(b)) ? -1
+                                                                         : 0;
+    if (steps == 0) break;
+    size = slNeighbour(size, steps);
+  }
+  return quotient < 0.0f ? -size : (quotient > 0.0f ? size : quotient);
+}
+float slSqrt(float x) {
+  float root = sqrt(x);
+  for (int i = 0; i < 8 && slIsNormal(root); ++i) {
+    double high = slMidpoint(root, 1);
+    double low = slMidpoint(root, -1);
+    int steps = double(x) > high * high ? 1 : (double(x) < low * low ? -1 : 0);
+    if (steps == 0) break;
+    root = slNeighbour(root, steps);
+  }
+  return root;
+}
+// To a unit or two of the double's last place, by Newton's method.
+double slDivide(double a, double b) {
+  double quotient = a / b;
+  quotient += (a - quotient * b) / b;
+  return quotient + (a - quotient * b) / b;
+}
+#define sqrt slSqrt
 uint slMulHigh(uint a, uint b) {
   uint high;
   uint low;

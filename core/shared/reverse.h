@@ -32,7 +32,7 @@ SL_FUNC vec3 reverseOrigin(Face face, uint64 item, uint k, StageParams params) {
     uint edge = k / n_edge;
     uint place = k - edge * n_edge;
     float jitter = place == 0u ? 0.0f : haltonFraction(halton2(item, params.shifts.y));
-    float along = (slFloat(place) + jitter) / slFloat(n_edge);
+    float along = slDivide(slFloat(place) + jitter, slFloat(n_edge));
     u = edge == 0u ? along : (edge == 1u ? 1.0f : (edge == 2u ? 1.0f - along : 0.0f));
     v = edge == 0u ? 0.0f : (edge == 1u ? along : (edge == 2u ? 1.0f : 1.0f - along));
   } else {

@@ -64,8 +64,8 @@ SL_FUNC ShearedRay shearRay(Ray ray) {
   ShearedRay result;
   result.origin =
       vec4(componentAt(origin, lateral), componentAt(origin, lateral2), componentAt(origin, depth), 0.0f);
-  result.shear = vec4(componentAt(direction, lateral) / along, componentAt(direction, lateral2) / along,
-                      1.0f / along, 0.0f);
+  result.shear = vec4(slDivide(componentAt(direction, lateral), along),
+                      slDivide(componentAt(direction, lateral2), along), slDivide(1.0f, along), 0.0f);
   result.axes = uvec4(lateral, lateral2, depth, 0u);
   return result;
 }
@@ -97,7 +97,7 @@ SL_FUNC float preciseDepth(vec3 a, vec3 b, vec3 c) {
   double az = a.z;
   double bz = b.z;
   double cz = c.z;
-  return det == 0.0 ? 0.0f : slFloat((u * az + v * bz + w * cz) / det);
+  return det == 0.0 ? 0.0f : slFloat(slDivide(u * az + v * bz + w * cz, det));
 #else
   TwoFloat u = differenceOfProducts(c.x, b.y, c.y, b.x);
   TwoFloat v = differenceOfProducts(a.x, c.y, a.y, c.x);
@@ -133,7 +133,7 @@ SL_FUNC float intersectTriangle(ShearedRay ray, vec3 v0, vec3 v1, vec3 v2) {
   float trusted = area * max(fabs(nearest), fabs(farthest));
   bool rough = trusted < max(reach * reach * (farthest - nearest), kUnderflowGuard) ||
                area < kUnderflowGuard || u == 0.0f || v == 0.0f || w == 0.0f;
-  float depth = rough ? preciseDepth(a, b, c) : (u * a.z + v * b.z + w * c.z) / det;
+  float depth = rough ? preciseDepth(a, b, c) : slDivide(u * a.z + v * b.z + w * c.z, det);
   float t = depth * ray.shear.z;
   return t > 0.0f && t < uintBitsToFloat(0x7f800000u) ? t : 0.0f;
 }

@@ -61,10 +61,10 @@ SL_FUNC TwoFloat scaleTwoFloat(TwoFloat a, float b) {
 
 /// a / b, rounded to float; the last bit may differ from the rounded exact quotient in about one of 2^20.
 SL_FUNC float divideTwoFloats(TwoFloat a, TwoFloat b) {
-  float quotient = a.high / b.high;
+  float quotient = slDivide(a.high, b.high);
   TwoFloat part = scaleTwoFloat(b, -quotient);
   TwoFloat rest = addTwoFloats(a, part);
-  return quotient + rest.high / b.high;
+  return quotient + slDivide(rest.high, b.high);
 }
 
 SL_NAMESPACE_END

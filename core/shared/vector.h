@@ -39,7 +39,7 @@ SL_FUNC float length3(vec3 a) {
 /// Unit vector; the zero vector stays zero.
 SL_FUNC vec3 normalize3(vec3 a) {
   float length = length3(a);
-  return length > 0.0f ? vec3(a.x / length, a.y / length, a.z / length) : a;
+  return length > 0.0f ? vec3(slDivide(a.x, length), slDivide(a.y, length), slDivide(a.z, length)) : a;
 }
 
 SL_NAMESPACE_END
