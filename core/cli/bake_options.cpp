@@ -73,7 +73,9 @@ void declareMachine(CLI::App& command, BakeOptions& options) {
   static const std::map<std::string, SetKind> kSets = {
       {"auto", SetKind::kAuto}, {"array", SetKind::kArray}, {"hash", SetKind::kHash}};
   const auto group = [](CLI::Option* option) { option->group("Machine (same result)"); };
-  group(command.add_option("--device", options.device, "cpu, opencl, opencl:INDEX or opencl:PART-OF-NAME")
+  group(command
+            .add_option("--device", options.device,
+                        "cpu, opencl or vulkan; the latter two also with :INDEX or :PART-OF-NAME")
             ->check(deviceName())
             ->type_name("NAME")
             ->capture_default_str());

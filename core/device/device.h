@@ -20,6 +20,10 @@ struct DeviceInfo {
   std::string layout;    ///< tree layout and kind of traversal, e.g. "bvh2, packets of 8"
   std::string unusable;  ///< why it cannot run; empty: it can
   uint64_t memory_bytes = 0;
+  // The driver's own trees (vulkan), once a scene is on the device; else 0.
+  uint32_t driver_tree_parts = 0;        ///< bottom-level acceleration structures
+  uint64_t driver_tree_bytes = 0;        ///< of all acceleration structures
+  double driver_tree_build_seconds = 0;  ///< with compaction
 };
 
 /// How a device keeps the set of found triangles. The result is the same.

@@ -51,13 +51,13 @@ VulkanBuffer::~VulkanBuffer() {
 
 VulkanContext::VulkanContext(const std::string& selector, bool ray_queries)
     : api_(instance_.api()), choice_(selectVulkanDevice(instance_, selector)) {
-  uses_pipelines_ = choice_.has_pipelines && !(ray_queries && choice_.has_ray_queries);
-  if (ray_queries && uses_pipelines_) {
+  const VulkanAbilities& abilities = choice_.abilities;
+  uses_pipelines_ = abilities.pipelines && !ray_queries;
+  if (ray_queries && !abilities.ray_queries) {
     throw Error(fmt::format("device \"{}\" ({}) has no ray queries (VK_KHR_ray_query)", choice_.info.id,
                             choice_.info.name));
   }
-  choice_.info.layout =
-      uses_pipelines_ ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
+  choice_.info.layout = vulkanLayout(uses_pipelines_);
   families_ = chooseFamilies(api_, choice_.physical);
   api_.vkGetPhysicalDeviceMemoryProperties(choice_.physical, &memory_);
   readLimits();

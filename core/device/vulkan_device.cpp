@@ -39,7 +39,13 @@ class VulkanDevice final : public Device {
     reserveEntries(1u << 16);
   }
 
-  DeviceInfo info() const override { return context_.info(); }
+  DeviceInfo info() const override {
+    DeviceInfo info = context_.info();
+    info.driver_tree_parts = static_cast<uint32_t>(scene_.tree.parts.size());
+    info.driver_tree_bytes = scene_.tree.bytes;
+    info.driver_tree_build_seconds = scene_.tree.build_seconds;
+    return info;
+  }
 
   void beginCell(std::span<const Face> faces, const StageParams& params) override {
     runner_.commands.update(faces_, faces.data(), faces.size_bytes());
@@ -152,7 +158,7 @@ class VulkanDevice final : public Device {
   bool wantsHash(const DeviceOptions& options) const {
     if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
     const uint64_t budget =
-        options.memory_budget_bytes > 0 ? options.memory_budget_bytes : info().memory_bytes;
+        options.memory_budget_bytes > 0 ? options.memory_budget_bytes : context_.info().memory_bytes;
     const uint64_t array = uint64_t(triangle_count_) * 4;
     return array > context_.limits().allocation_bytes || context_.allocatedBytes() + array > budget;
   }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <set>
 #include <utility>
 
 #include "core/error.h"
@@ -25,17 +24,11 @@ std::set<std::string, std::less<>> extensionsOf(const VulkanApi& api, VkPhysical
   return names;
 }
 
-/// Why a device cannot trace; empty: it can. Fills in which of the two ways it knows.
-std::string whyUnusable(const VulkanApi& api, VulkanDeviceChoice& device, uint32_t version) {
-  if (version < VK_API_VERSION_1_2) {
-    return fmt::format("its driver knows Vulkan {}.{}, 1.2 is needed", VK_API_VERSION_MAJOR(version),
-                       VK_API_VERSION_MINOR(version));
-  }
-  const auto extensions = extensionsOf(api, device.physical);
-  for (const char* name :
-       {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME}) {
-    if (!extensions.contains(name)) return fmt::format("no ray tracing: its driver lacks {}", name);
-  }
+VulkanAbilities abilitiesOf(const VulkanApi& api, VkPhysicalDevice device, uint32_t version) {
+  VulkanAbilities abilities;
+  abilities.version = version;
+  if (version < VK_API_VERSION_1_2) return abilities;
+  abilities.extensions = extensionsOf(api, device);
   auto queries =
       vkStruct<VkPhysicalDeviceRayQueryFeaturesKHR>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR);
   auto pipelines = vkStruct<VkPhysicalDeviceRayTracingPipelineFeaturesKHR>(
@@ -45,26 +38,23 @@ std::string whyUnusable(const VulkanApi& api, VulkanDeviceChoice& device, uint32
   auto core =
       vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
   auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
+  // Only structs of extensions that are there may be asked for.
+  const auto ask = [&](auto& extension, const char* name) {
+    if (abilities.extensions.contains(name)) extension.pNext = std::exchange(core.pNext, &extension);
+  };
+  ask(queries, VK_KHR_RAY_QUERY_EXTENSION_NAME);
+  ask(pipelines, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
+  ask(structures, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
   features.pNext = &core;
-  core.pNext = &structures;
-  if (extensions.contains(VK_KHR_RAY_QUERY_EXTENSION_NAME)) {
-    queries.pNext = std::exchange(structures.pNext, &queries);
-  }
-  if (extensions.contains(VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME)) {
-    pipelines.pNext = std::exchange(structures.pNext, &pipelines);
-  }
-  api.vkGetPhysicalDeviceFeatures2(device.physical, &features);
-  device.has_pipelines = pipelines.rayTracingPipeline;
-  device.has_ray_queries = queries.rayQuery;
-  if (!structures.accelerationStructure) return "no ray tracing: accelerationStructure is off";
-  if (!device.has_pipelines && !device.has_ray_queries) {
-    return "its driver has neither VK_KHR_ray_tracing_pipeline nor VK_KHR_ray_query";
-  }
-  if (!core.bufferDeviceAddress) return "no buffer addresses in shaders (bufferDeviceAddress)";
-  if (!core.scalarBlockLayout) return "no scalar layout of buffers (scalarBlockLayout)";
-  if (!features.features.shaderInt64) return "no 64-bit integers in shaders (shaderInt64)";
-  if (!features.features.shaderFloat64) return "no 64-bit floats in shaders (shaderFloat64)";
-  return {};
+  api.vkGetPhysicalDeviceFeatures2(device, &features);
+  abilities.structures = structures.accelerationStructure;
+  abilities.pipelines = pipelines.rayTracingPipeline;
+  abilities.ray_queries = queries.rayQuery;
+  abilities.addresses = core.bufferDeviceAddress;
+  abilities.scalar_layout = core.scalarBlockLayout;
+  abilities.int64 = features.features.shaderInt64;
+  abilities.float64 = features.features.shaderFloat64;
+  return abilities;
 }
 
 VulkanDeviceChoice describe(const VulkanApi& api, VkPhysicalDevice physical, size_t index) {
@@ -90,12 +80,12 @@ VulkanDeviceChoice describe(const VulkanApi& api, VkPhysicalDevice physical, siz
     }
   }
   try {
-    device.info.unusable = whyUnusable(api, device, version);
+    device.abilities = abilitiesOf(api, physical, version);
+    device.info.unusable = whyUnusable(device.abilities);
   } catch (const Error& error) {
     device.info.unusable = error.what();
   }
-  device.info.layout =
-      device.has_pipelines ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
+  device.info.layout = vulkanLayout(device.abilities.pipelines);
   return device;
 }
 
@@ -152,6 +142,30 @@ std::string inventory(const std::vector<VulkanDeviceChoice>& devices) {
 }
 
 }  // namespace
+
+std::string whyUnusable(const VulkanAbilities& abilities) {
+  if (abilities.version < VK_API_VERSION_1_2) {
+    return fmt::format("its driver knows Vulkan {}.{}, 1.2 is needed",
+                       VK_API_VERSION_MAJOR(abilities.version), VK_API_VERSION_MINOR(abilities.version));
+  }
+  for (const char* name :
+       {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME}) {
+    if (!abilities.extensions.contains(name)) return fmt::format("no ray tracing: its driver lacks {}", name);
+  }
+  if (!abilities.structures) return "no ray tracing: its driver has accelerationStructure off";
+  if (!abilities.pipelines && !abilities.ray_queries) {
+    return "no ray tracing: its driver has neither VK_KHR_ray_tracing_pipeline nor VK_KHR_ray_query";
+  }
+  if (!abilities.addresses) return "no addresses of buffers in shaders (bufferDeviceAddress)";
+  if (!abilities.scalar_layout) return "no scalar layout of buffers (scalarBlockLayout)";
+  if (!abilities.int64) return "no 64-bit integers in shaders (shaderInt64)";
+  if (!abilities.float64) return "no 64-bit floats in shaders (shaderFloat64)";
+  return {};
+}
+
+std::string vulkanLayout(bool pipelines) {
+  return pipelines ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
+}
 
 std::vector<VulkanDeviceChoice> findVulkanDevices(const VulkanInstance& instance) {
   const VulkanApi& api = instance.api();

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -8,12 +9,29 @@
 
 namespace sightline {
 
+/// What a driver can do, as far as tracing needs it.
+struct VulkanAbilities {
+  uint32_t version = 0;
+  std::set<std::string, std::less<>> extensions;
+  bool structures = false;   ///< acceleration structures
+  bool pipelines = false;    ///< ray tracing pipelines
+  bool ray_queries = false;  ///< in compute shaders
+  bool addresses = false;    ///< of buffers
+  bool scalar_layout = false;
+  bool int64 = false, float64 = false;  ///< in shaders
+};
+
+/// Why a device cannot trace, in one line; empty: it can.
+std::string whyUnusable(const VulkanAbilities& abilities);
+
+/// DeviceInfo::layout.
+std::string vulkanLayout(bool pipelines);
+
 /// A physical device of an instance.
 struct VulkanDeviceChoice {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
-  bool has_pipelines = false;    ///< VK_KHR_ray_tracing_pipeline
-  bool has_ray_queries = false;  ///< VK_KHR_ray_query
+  VulkanAbilities abilities;
   DeviceInfo info;
 };
 

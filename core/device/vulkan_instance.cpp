@@ -81,7 +81,11 @@ VulkanInstance::VulkanInstance() {
     info.ppEnabledExtensionNames = &extension;
     info.pNext = &features;
   }
-  checkVk(api_.vkCreateInstance(&info, nullptr, &instance_), "vkCreateInstance");
+  const VkResult created = api_.vkCreateInstance(&info, nullptr, &instance_);
+  if (created == VK_ERROR_INCOMPATIBLE_DRIVER) {
+    throw Error("no Vulkan driver: install a GPU's, or mesa-vulkan-drivers 25 or later for the processor");
+  }
+  checkVk(created, "vkCreateInstance");
   api_.loadInstance(instance_);
   if (validation) {
     const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(

@@ -27,7 +27,10 @@ Json toJson(const std::optional<DeviceInfo>& device) {
           {"name", device->name},
           {"driver", device->driver},
           {"layout", device->layout},
-          {"memory_bytes", device->memory_bytes}};
+          {"memory_bytes", device->memory_bytes},
+          {"driver_tree_parts", device->driver_tree_parts},
+          {"driver_tree_bytes", device->driver_tree_bytes},
+          {"driver_tree_build_seconds", device->driver_tree_build_seconds}};
 }
 
 Json toJson(const std::optional<TreeSummary>& tree, uint64_t triangles) {

@@ -139,6 +139,14 @@ TEST_F(VulkanDeviceTest, BakesAreRepeatable) {
   DeviceOptions hash;
   hash.set = SetKind::kHash;
   expectSame(bakeOn("vulkan", scene_, cell_, params(), hash), first, "hash set");
+  const auto devices = listVulkanDevices();
+  if (devices.front().name.find("llvmpipe") == std::string::npos) return;
+  DeviceOptions queries;
+  queries.ray_queries = true;
+  for (const uint32_t size : {0u, 5u}) {
+    queries.work_group_size = size;
+    expectSame(bakeOn("vulkan", scene_, cell_, params(), queries), first, "ray queries");
+  }
 }
 
 /// What Vulkan finds and the reference does not, or the other way round, is little, and its witnesses hold.
@@ -159,6 +167,18 @@ TEST_F(VulkanDeviceTest, BakesWhatTheReferenceBakes) {
     other_hits += reference.trace(ray).triangle != pvs.triangles[i];
   }
   EXPECT_LE(other_hits, pvs.triangles.size() / 100);
+}
+
+TEST_F(VulkanDeviceTest, SaysWhatTheDriversTreeTakes) {
+  const Bvh bvh = buildBvh(scene_.positions, scene_.triangles);
+  EXPECT_EQ(makeDevice("vulkan", scene_, bvh)->info().driver_tree_parts, 1u);
+  DeviceOptions options;
+  options.part_triangles = 6000;
+  const DeviceInfo info = makeDevice("vulkan", scene_, bvh, options)->info();
+  EXPECT_GE(info.driver_tree_parts, 4u);
+  EXPECT_GT(info.driver_tree_bytes, scene_.triangles.size() * 16);
+  EXPECT_LT(info.driver_tree_bytes, scene_.triangles.size() * 1000);
+  EXPECT_GT(info.driver_tree_build_seconds, 0);
 }
 
 TEST_F(VulkanDeviceTest, NamesThatSelectNothingAreOneLine) {

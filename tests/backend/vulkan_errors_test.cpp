@@ -1,0 +1,120 @@
+// What goes wrong with Vulkan is one clear line; and the tests really run under the validation layer.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "core/device/vulkan_commands.h"
+#include "core/error.h"
+#include "tests/support/vulkan.h"
+
+namespace sightline {
+namespace {
+
+std::string lineOf(auto&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "nothing was thrown";
+}
+
+void expectLine(const std::string& line, std::initializer_list<const char*> parts) {
+  EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  for (const char* part : parts)
+    EXPECT_NE(line.find(part), std::string::npos) << "no \"" << part << "\": " << line;
+}
+
+TEST(VulkanErrors, CodesAreToldInWords) {
+  expectLine(lineOf([] { checkVk(VK_ERROR_DEVICE_LOST, "vkQueueSubmit"); }),
+             {"vkQueueSubmit", "lost the device", "-4"});
+  expectLine(lineOf([] { checkVk(VK_ERROR_OUT_OF_DEVICE_MEMORY, "vkCreateRayTracingPipelinesKHR"); }),
+             {"vkCreateRayTracingPipelinesKHR", "out of device memory"});
+  EXPECT_EQ(lineOf([] { checkVk(VK_SUCCESS, "vkQueueSubmit"); }), "nothing was thrown");
+}
+
+TEST(VulkanErrors, EachMissingAbilityIsNamed) {
+  VulkanAbilities good;
+  good.version = VK_API_VERSION_1_2;
+  good.extensions = {"VK_KHR_acceleration_structure", "VK_KHR_deferred_host_operations"};
+  good.structures = good.pipelines = good.addresses = good.scalar_layout = good.int64 = good.float64 = true;
+  EXPECT_EQ(whyUnusable(good), "");
+  const auto expectReason = [&](const char* part, auto&& spoil) {
+    VulkanAbilities bad = good;
+    spoil(bad);
+    expectLine(whyUnusable(bad), {part});
+  };
+  expectReason("Vulkan 1.1", [](VulkanAbilities& a) { a.version = VK_API_VERSION_1_1; });
+  expectReason("VK_KHR_acceleration_structure", [](VulkanAbilities& a) { a.extensions.clear(); });
+  expectReason("VK_KHR_deferred_host_operations",
+               [](VulkanAbilities& a) { a.extensions.erase("VK_KHR_deferred_host_operations"); });
+  expectReason("accelerationStructure", [](VulkanAbilities& a) { a.structures = false; });
+  expectReason("VK_KHR_ray_query", [](VulkanAbilities& a) { a.pipelines = false; });
+  expectReason("bufferDeviceAddress", [](VulkanAbilities& a) { a.addresses = false; });
+  expectReason("scalarBlockLayout", [](VulkanAbilities& a) { a.scalar_layout = false; });
+  expectReason("shaderInt64", [](VulkanAbilities& a) { a.int64 = false; });
+  expectReason("shaderFloat64", [](VulkanAbilities& a) { a.float64 = false; });
+  VulkanAbilities queries = good;
+  queries.pipelines = false;
+  queries.ray_queries = true;
+  EXPECT_EQ(whyUnusable(queries), "");
+}
+
+TEST(VulkanErrors, NoDriverIsAReasonInTheListOfDevices) {
+  const char* before = std::getenv("VK_ICD_FILENAMES");
+  const std::string kept = before ? before : "";
+  setenv("VK_ICD_FILENAMES", "/nonexistent/driver.json", 1);
+  const std::vector<DeviceInfo> devices = listVulkanDevices();
+  before ? setenv("VK_ICD_FILENAMES", kept.c_str(), 1) : unsetenv("VK_ICD_FILENAMES");
+  ASSERT_EQ(devices.size(), 1u);
+  EXPECT_EQ(devices.front().id, "vulkan");
+  expectLine(devices.front().unusable, {"Vulkan", "install"});
+}
+
+TEST(VulkanErrors, WhatDoesNotFitIsNamed) {
+  SL_SKIP_WITHOUT_VULKAN();
+  const VulkanContext context("vulkan", false);
+  expectLine(lineOf([&] { context.buffer(context.limits().allocation_bytes + 1, "triangles of the scene"); }),
+             {"vulkan:", "triangles of the scene", "MiB", "one buffer", "use the device cpu"});
+  if (context.limits().allocation_bytes > context.info().memory_bytes) return;
+  std::vector<VulkanBuffer> buffers;
+  const uint64_t bytes = context.limits().allocation_bytes;
+  expectLine(lineOf([&] {
+               for (uint64_t i = 0; i <= context.info().memory_bytes / bytes; ++i) {
+                 buffers.push_back(context.buffer(bytes, "hits"));
+               }
+             }),
+             {"hits", "are in use", "use the device cpu"});
+  buffers.clear();
+  EXPECT_EQ(context.allocatedBytes(), 0u);
+}
+
+/// Under validation, as CTest runs the tests, a mistake ends the process; so does a missing barrier.
+TEST(VulkanErrorsDeathTest, ValidationIsOn) {
+  SL_SKIP_WITHOUT_VULKAN();
+  const char* validation = std::getenv("SIGHTLINE_VULKAN_VALIDATION");
+  if (!validation) GTEST_SKIP() << "not run by CTest";
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_DEATH(
+      {
+        const VulkanContext context("vulkan", false);
+        VkBufferCreateInfo info{};
+        VkBuffer buffer = VK_NULL_HANDLE;
+        context.api().vkCreateBuffer(context.device(), &info, nullptr, &buffer);
+      },
+      "Vulkan validation: .*VUID");
+  EXPECT_DEATH(
+      {
+        const VulkanContext context("vulkan", false);
+        const VulkanBuffer buffer = context.buffer(64, "test");
+        VulkanCommands commands(context, context.queue(), context.queueFamily());
+        VkCommandBuffer recording = commands.next();
+        context.api().vkCmdFillBuffer(recording, buffer.get(), 0, 64, 1);
+        context.api().vkCmdFillBuffer(recording, buffer.get(), 0, 64, 2);
+        commands.finish();
+      },
+      "SYNC-HAZARD-WRITE");
+}
+
+}  // namespace
+}  // namespace sightline
