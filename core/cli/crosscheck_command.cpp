@@ -138,7 +138,7 @@ void addCrosscheckCommand(CLI::App& app) {
       ->type_name("STEPS")
       ->capture_default_str();
   command->add_option("--scale", options->scale, "multiply scene and cells by this first")
-      ->check(CLI::Range(1e-30, 1e30).description(""))
+      ->check(CLI::Range(1e-38, 1e38).description(""))
       ->type_name("X")
       ->capture_default_str();
   command->add_option("--move", options->move, "then move them by this along x, y and z")

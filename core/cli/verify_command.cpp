@@ -1,0 +1,104 @@
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+
+#include "core/cli/commands.h"
+#include "core/crosscheck/verify.h"
+#include "core/error.h"
+#include "core/pvs/pvs_writer.h"
+#include "core/report/text.h"
+#include "core/scene/file_io.h"
+
+namespace sightline {
+namespace {
+
+struct VerifyCommand {
+  std::filesystem::path scene, pvs, output, report;
+  VerifyOptions options;
+  uint64_t max_disproved = 0;
+  double min_proven = 0.9999;
+  bool repair = false;
+};
+
+void writeReport(const VerifyCommand& command, const PvsFile& pvs, const std::vector<CellProofs>& cells) {
+  const Json json = {
+      {"sightline", SL_VERSION},
+      {"scene",
+       {{"name", pvs.scene_name}, {"hash", hashText(pvs.scene_hash)}, {"triangles", pvs.triangle_count}}},
+      {"device", pvs.device},
+      {"rounding_steps", command.options.rounding.steps},
+      {"cells", verifyJson(cells)}};
+  OutputFile file(command.report);
+  file.write(jsonText(json));
+  file.commit();
+}
+
+/// Says whether the result is past the limits.
+bool pastLimits(const VerifyCommand& command, const std::vector<CellProofs>& cells) {
+  CellProofs all;
+  for (const CellProofs& cell : cells) {
+    for (uint32_t i = 0; i < kProofs; ++i) all.counts[i] += cell.counts[i];
+  }
+  const uint64_t disproved = all.counts[size_t(Proof::kDisproved)];
+  fmt::print("{:.5f} % of the witnesses prove their triangle, {} are disproved\n", 100 * all.provenShare(),
+             disproved);
+  if (disproved > command.max_disproved) {
+    fmt::print("past the limit: {} disproved, at most {} allowed\n", disproved, command.max_disproved);
+  }
+  if (all.provenShare() < command.min_proven) {
+    fmt::print("past the limit: {:.7f} proven, at least {} wanted\n", all.provenShare(), command.min_proven);
+  }
+  return disproved > command.max_disproved || all.provenShare() < command.min_proven;
+}
+
+void run(const VerifyCommand& command) {
+  if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
+  PvsFile pvs = loadFinishedCells(command.pvs);
+  if (!pvs.has_witnesses) {
+    throw Error(fmt::format("{}: has no witnesses; bake it with --witnesses", command.pvs.string()));
+  }
+  const Scene scene = loadScene(command.scene, {.repair = command.repair});
+  requireScene(pvs, scene, command.pvs);
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const Judge judge(scene, bvh);
+  std::vector<CellProofs> cells;
+  for (CellPvs& cell : pvs.cells) cells.push_back(verifyCell(judge, scene, cell, command.options));
+  std::fputs(verifyTable(cells).c_str(), stdout);
+  if (!command.report.empty()) writeReport(command, pvs, cells);
+  if (!command.output.empty()) savePvs(pvs, command.output);
+  if (pastLimits(command, cells)) throw ExitCode{kExitPastLimit};
+}
+
+}  // namespace
+
+void addVerifyCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("verify", "Prove that each triangle of a bake is seen, by exact rays");
+  const auto options = std::make_shared<VerifyCommand>();
+  command->add_option("scene", options->scene, "the scene that was baked")->required()->type_name("SCENE");
+  command->add_option("pvs", options->pvs, "made by bake --witnesses")->required()->type_name("OUT.pvs");
+  command->add_option("-o,--output", options->output, "write the sets with better witnesses")
+      ->type_name("NEW.pvs");
+  command->add_option("--report", options->report, "write all that is not proven as JSON (docs/report.md)")
+      ->type_name("R.json");
+  command
+      ->add_option("--max-disproved", options->max_disproved,
+                   "exit code 3 for more triangles disproved than this")
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--min-proven", options->min_proven, "exit code 3 for a smaller share proven than this")
+      ->check(CLI::Range(0.0, 1.0))
+      ->type_name("SHARE")
+      ->capture_default_str();
+  command
+      ->add_option("--rounding", options->options.rounding.steps,
+                   "float steps beside an edge that count as rounding")
+      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->type_name("STEPS")
+      ->capture_default_str();
+  command->add_flag("--repair", options->repair, "load the scene as bake --repair did");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace sightline

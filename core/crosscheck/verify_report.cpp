@@ -1,0 +1,71 @@
+#include <fmt/format.h>
+
+#include "core/crosscheck/crosscheck_report.h"
+#include "core/crosscheck/verify.h"
+#include "core/report/text.h"
+
+namespace sightline {
+namespace {
+
+/// Open proofs that the table lists, over all cells; the JSON has them all.
+constexpr size_t kListed = 20;
+
+Json hexVector(const glm::vec3& v) {
+  return {hexFloat(v.x), hexFloat(v.y), hexFloat(v.z)};
+}
+
+std::string openLine(const std::string& cell, const OpenProof& open) {
+  const glm::vec3 o = open.witness.origin, d = open.witness.direction;
+  return fmt::format("{}: triangle {} is {}, {:.2g} steps beside: {} ray from {} {} {} along {} {} {}\n",
+                     cell, open.triangle, proofName(open.proof), open.steps_beside,
+                     stageName(open.witness.stage), hexFloat(o.x), hexFloat(o.y), hexFloat(o.z),
+                     hexFloat(d.x), hexFloat(d.y), hexFloat(d.z));
+}
+
+}  // namespace
+
+std::string verifyTable(const std::vector<CellProofs>& cells) {
+  size_t width = 4;
+  for (const CellProofs& cell : cells) width = std::max(width, cell.cell.size());
+  std::string table = fmt::format("{:<{}}", "cell", width);
+  for (uint32_t i = 0; i < kProofs; ++i) table += fmt::format("  {:>9}", proofName(Proof(i)));
+  table += "    proven share\n";
+  for (const CellProofs& cell : cells) {
+    table += fmt::format("{:<{}}", cell.cell, width);
+    for (const uint64_t count : cell.counts) table += fmt::format("  {:>9}", count);
+    table += fmt::format("  {:>12.5f} %\n", 100 * cell.provenShare());
+  }
+  size_t listed = 0;
+  for (const CellProofs& cell : cells) {
+    for (const OpenProof& open : cell.open) {
+      if (open.proof == Proof::kPoint) continue;
+      if (listed++ < kListed) table += openLine(cell.cell, open);
+    }
+  }
+  if (listed > kListed) table += fmt::format("... and {} more (--report lists them all)\n", listed - kListed);
+  return table;
+}
+
+Json verifyJson(const std::vector<CellProofs>& cells) {
+  Json json = Json::array();
+  for (const CellProofs& cell : cells) {
+    Json its = {{"name", cell.cell}};
+    for (uint32_t i = 0; i < kProofs; ++i) its[proofName(Proof(i))] = cell.counts[i];
+    its["proven_share"] = cell.provenShare();
+    its["open"] = Json::array();
+    for (const OpenProof& open : cell.open) {
+      Json entry = {{"triangle", open.triangle},
+                    {"proof", proofName(open.proof)},
+                    {"steps_beside", open.steps_beside},
+                    {"stage", stageName(open.witness.stage)},
+                    {"origin", hexVector(open.witness.origin)},
+                    {"direction", hexVector(open.witness.direction)}};
+      if (open.proof == Proof::kPoint) entry["target"] = {open.target.x, open.target.y, open.target.z};
+      its["open"].push_back(entry);
+    }
+    json.push_back(its);
+  }
+  return json;
+}
+
+}  // namespace sightline

@@ -1,0 +1,87 @@
+// crosscheck and verify as a user runs them.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/cli/run_program.h"
+#include "tests/output/example_pvs.h"
+
+namespace sightline {
+namespace {
+
+using test::ProgramRun;
+using test::runProgram;
+
+/// A small city with a baked cell.
+class City {
+ public:
+  City() {
+    runProgram("scene city -o " + (folder_ / "city.glb").string() + " --triangles 3000 --cells " +
+               (folder_ / "all.json").string());
+    const auto cells = nlohmann::json::parse(std::ifstream(folder_ / "all.json"));
+    std::ofstream(folder_ / "cells.json") << nlohmann::json{{"cells", {cells["cells"][0]}}};
+  }
+  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
+  std::string input() const { return *this / "city.glb" + " --cells " + *this / "cells.json"; }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+void expectRun(const std::string& arguments, int exit_code, std::initializer_list<const char*> parts) {
+  const ProgramRun run = runProgram(arguments);
+  EXPECT_EQ(run.exit_code, exit_code) << arguments << "\n" << run.output;
+  for (const char* part : parts)
+    EXPECT_NE(run.output.find(part), std::string::npos) << part << "\n" << run.output;
+}
+
+TEST(CrosscheckCommand, ReportsAndKeepsToLimits) {
+  const City city;
+  const std::string start = "crosscheck " + city.input() + " --devices cpu,cpu --rays 2000";
+  expectRun(start + " --max-wrong 0 --max-missed 0 --max-differences 0 --report " + city / "r.json", 0,
+            {"vertex", "far-tiny", "right"});
+  const auto report = nlohmann::json::parse(std::ifstream(city / "r.json"));
+  ASSERT_EQ(report["kinds"].size(), 10u);
+  EXPECT_EQ(report["kinds"][3]["kind"], "vertex");
+  EXPECT_EQ(report["kinds"][3]["rays"], 2000);
+  EXPECT_EQ(report["kinds"][3]["devices"][1]["differences"]["same"], 2000);
+  ASSERT_EQ(report["worst"].size(), 20u);
+  EXPECT_EQ(report["worst"][0]["origin"].size(), 3u);
+  EXPECT_EQ(report["worst"][0]["answers"].size(), 2u);
+  expectRun(start + " --kinds vertex,edge --check-every 1 --max-rounded 0", 3, {"past the limit", "rounded"});
+  expectRun(start + " --kinds random --move 1e6 --scale 0.5 --max-wrong 0", 0, {"random"});
+}
+
+TEST(CrosscheckCommand, SaysWhatIsWrong) {
+  const City city;
+  expectRun("crosscheck " + city.input() + " --devices cpu --kinds sideways", 2, {"sideways"});
+  expectRun("crosscheck " + city.input() + " --devices gpu9", 2, {"gpu9"});
+  expectRun("crosscheck " + city.input() + " --devices cpu --move 1e30 --scale 1e38", 2,
+            {"beyond the largest"});
+  expectRun("crosscheck " + city.input(), 2, {"--devices"});
+}
+
+TEST(VerifyCommand, ProvesABakeAndWritesBetterWitnesses) {
+  const City city;
+  const std::string bake = "bake " + city.input() + " --device cpu --n-rand 100000 --validation-rays 0 -o ";
+  expectRun(bake + city / "plain.pvs", 0, {});
+  expectRun("verify " + city / "city.glb" + " " + city / "plain.pvs", 1, {"--witnesses"});
+  expectRun(bake + city / "w.pvs" + " --witnesses", 0, {});
+  expectRun("verify " + city / "city.glb" + " " + city / "w.pvs" + " -o " + city / "better.pvs" +
+                " --report " + city / "v.json" + " --min-proven 0.99",
+            0, {"proven", "0 are disproved"});
+  const auto report = nlohmann::json::parse(std::ifstream(city / "v.json"));
+  EXPECT_GT(report["cells"][0]["proven"], 50);
+  EXPECT_EQ(report["cells"][0]["disproved"], 0);
+  const PvsFile before = loadPvs(city / "w.pvs"), after = loadPvs(city / "better.pvs");
+  EXPECT_EQ(before.cells[0].triangles, after.cells[0].triangles);
+
+  PvsFile spoilt = before;
+  for (Witness& witness : spoilt.cells[0].witnesses) witness.direction *= -1.0f;
+  savePvs(spoilt, city / "spoilt.pvs");
+  expectRun("verify " + city / "city.glb" + " " + city / "spoilt.pvs", 3, {"past the limit", "is disproved"});
+}
+
+}  // namespace
+}  // namespace sightline
