@@ -40,7 +40,7 @@ SL_STRUCT(VulkanLaunch) {
   uint64 bits;             ///< a bit a border ray: it met a discontinuity
   uint64 discontinuities;  ///< uint[]: indices of border rays
   uint64 rays;             ///< Ray[] that trace_rays reads, stage_rays writes
-  uint64 hits;             ///< Hit[] of trace_rays
+  uint64 hits;             ///< Hit[] that trace_rays and trace_slots write
   // Lists from bits.
   uint64 words;         ///< uint[]: bits to list
   uint64 block_counts;  ///< uint[]: bits in each block of kBlockWords words, then where its indices start

@@ -68,6 +68,17 @@ uint triangleOf(LeafHit hit) {
   return hit.leaf == kNoTriangle ? kNoTriangle : Words(SL_LAUNCH.leaf_ids).at[hit.leaf];
 }
 
+layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer Hits {
+  Hit at[];
+};
+
+void writeHit(uint item, LeafHit nearest) {
+  Hit hit;
+  hit.t = nearest.t;
+  hit.triangle = triangleOf(nearest);
+  Hits(SL_LAUNCH.hits).at[item] = hit;
+}
+
 void countRay(uint item) {
   atomicAdd(Words(SL_LAUNCH.counters).at[(item >> 5) % kRayCounters], 1u);
 }

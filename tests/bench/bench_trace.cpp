@@ -1,8 +1,8 @@
-// Speed of tracing on a generated city: the devices cpu and opencl and, as the peer, Embree 3 (robust, single
-// rays, all threads), in turns in one run; hits are compared in the same run.
+// Speed of tracing on a generated city: the devices cpu, opencl and, if named, vulkan and, as the peer,
+// Embree 3 (robust, single rays, all threads), in turns in one run; hits are compared in the same run.
 //
 //   bench_trace [--triangles N] [--rays N] [--runs N] [--device opencl[:...]] [--leaf N] [--spatial] [--json]
-//               [--processor-time] [--skip cpu|opencl|embree]
+//               [--vulkan vulkan[:...]] [--processor-time] [--skip cpu|opencl|embree]
 //
 // random: rays of the first flat, volumetric and street cell, N a cell over its faces by area. Our devices
 // generate the rays themselves, in strata order, and that counts; Embree gets them ready-made in Halton
@@ -31,6 +31,7 @@
 #include "core/scene/view_cell.h"
 #include "core/shared/border.h"
 #include "core/shared/random_ray.h"
+#include "tests/bench/vulkan_tracer.h"
 #ifdef SL_HAVE_EMBREE
 #include <embree3/rtcore.h>
 #endif
@@ -43,6 +44,7 @@ struct Options {
   uint32_t rays = 4'000'000;
   int runs = 5;
   std::string device = "opencl";
+  std::string vulkan;  ///< empty: none
   BvhConfig bvh;
   std::string skip;  ///< a contestant to leave out
   bool processor_time = false;
@@ -228,6 +230,26 @@ Contestant openClContestant(const Workload& work, const std::string& device) {
           }};
 }
 
+Contestant vulkanContestant(const Workload& work, const std::string& device) {
+  auto tracer = std::make_shared<VulkanTracer>(device, work.scene, work.bvh, kShifts);
+  for (const Run& run : work.runs) tracer->addSegment(run.segment, run.face);
+  tracer->setRays(work.border);
+  return {"vulkan", [tracer] { tracer->traceSegments(); }, [tracer] { tracer->traceRays(); },
+          [&work, tracer] {
+            std::vector<Hit> hits(work.random.size());
+            for (size_t i = 0; i < work.runs.size(); ++i) {
+              const Run& run = work.runs[i];
+              const std::vector<Hit> by_slot = tracer->segmentHits(i);
+              for (uint32_t slot = 0; slot < by_slot.size(); ++slot) {
+                const uint32_t offset = slotOffset(run.segment, slot);
+                if (offset != kNoTriangle) hits[run.first + offset] = by_slot[slot];
+              }
+            }
+            return hits;
+          },
+          [tracer] { return tracer->rayHits(); }};
+}
+
 #ifdef SL_HAVE_EMBREE
 void traceEmbree(RTCScene scene, const std::vector<Ray>& rays, std::vector<Hit>& hits) {
   tbb::parallel_for(size_t{0}, (rays.size() + kChunk - 1) / kChunk, [&](size_t chunk) {
@@ -364,6 +386,8 @@ Options parse(int argc, char** argv) {
       options.runs = std::stoi(value());
     } else if (name == "--device") {
       options.device = value();
+    } else if (name == "--vulkan") {
+      options.vulkan = value();
     } else if (name == "--leaf") {
       options.bvh.max_leaf_size = uint32_t(std::stoul(value()));
     } else if (name == "--spatial") {
@@ -387,6 +411,7 @@ void run(const Options& options) {
   std::vector<Contestant> contestants;
   contestants.push_back(cpuContestant(work));
   if (!listOpenClDevices().empty()) contestants.push_back(openClContestant(work, options.device));
+  if (!options.vulkan.empty()) contestants.push_back(vulkanContestant(work, options.vulkan));
 #ifdef SL_HAVE_EMBREE
   contestants.push_back(embreeContestant(work));
 #endif
