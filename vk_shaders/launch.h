@@ -36,6 +36,8 @@ SL_STRUCT(VulkanLaunch) {
   uint64 entries;  ///< PvsEntry[]
   // Stages.
   uint64 segments;         ///< RandomSegment[] of the batch
+  uint64 border_edges;     ///< BorderEdge[], three an entry of the border launch
+  uint64 reverse_items;    ///< ReverseItem[] of the reverse launch
   uint64 border_hits;      ///< uint[] a border ray: leaf that it hit, or kNoTriangle
   uint64 bits;             ///< a bit a border ray: it met a discontinuity
   uint64 discontinuities;  ///< uint[]: indices of border rays

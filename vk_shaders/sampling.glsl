@@ -12,21 +12,38 @@ vec3 leafCorner(uint leaf, uint corner) {
   return vec3(corners.at[3u * corner], corners.at[3u * corner + 1u], corners.at[3u * corner + 2u]);
 }
 
-/// Border ray `index` (0 ..) of the last border launch.
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer BorderEdges {
+  BorderEdge at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ReverseItems {
+  ReverseItem at[];
+};
+
+/// Origin of the border rays of an entry.
+vec3 borderOrigin(uvec4 entry) {
+  return vec3(uintBitsToFloat(entry.x), uintBitsToFloat(entry.y), uintBitsToFloat(entry.z));
+}
+
+/// Side 0, 1 or 2 of the border polygon of the launch's entry `entry_index`: for border_edges.
+BorderEdge borderEdgeAt(uint entry_index, uint side) {
+  uvec4 entry = Entries(SL_LAUNCH.entries).at[SL_LAUNCH.border_first + entry_index].origin_triangle;
+  uint leaf = Words(SL_LAUNCH.leaf_of).at[entry.w];
+  return borderEdge(leafCorner(leaf, 0u), leafCorner(leaf, 1u), leafCorner(leaf, 2u), side,
+                    borderOrigin(entry), SL_LAUNCH.params);
+}
+
+/// Border ray `index` (0 ..) of the last border launch. Needs what border_edges wrote.
 Ray borderRayAt(uint index) {
   StageParams params = SL_LAUNCH.params;
   uint per_entry = borderRayCount(params);
   uint entry_index = index / per_entry;
   uint k = index - entry_index * per_entry;
   uvec4 entry = Entries(SL_LAUNCH.entries).at[SL_LAUNCH.border_first + entry_index].origin_triangle;
-  vec3 origin = vec3(uintBitsToFloat(entry.x), uintBitsToFloat(entry.y), uintBitsToFloat(entry.z));
-  uint leaf = Words(SL_LAUNCH.leaf_of).at[entry.w];
-  BorderEdge edge = borderEdge(leafCorner(leaf, 0u), leafCorner(leaf, 1u), leafCorner(leaf, 2u),
-                               borderSide(k, params), origin, params);
-  return borderRay(edge, k, origin, params);
+  BorderEdge edge = BorderEdges(SL_LAUNCH.border_edges).at[3u * entry_index + borderSide(k, params)];
+  return borderRay(edge, k, borderOrigin(entry), params);
 }
 
-/// Discontinuity `place` (0 ..) of the last border launch.
+/// Discontinuity `place` (0 ..) of the last border launch: for reverse_items.
 ReverseItem reverseItemAt(uint place) {
   uint border_index = Words(SL_LAUNCH.discontinuities).at[place];
   Ray border = borderRayAt(border_index);
@@ -47,13 +64,13 @@ ReverseItem reverseItemAt(uint place) {
   return item;
 }
 
-/// Reverse ray `index` (0 ..) of the reverse launch, or none.
+/// Reverse ray `index` (0 ..) of the reverse launch, or none. Needs what reverse_items wrote.
 Ray reverseRayAt(uint index) {
   StageParams params = SL_LAUNCH.params;
   uint per_item = reverseRayCount(params);
   uint place = index / per_item;
   uint k = index - place * per_item;
-  ReverseItem item = reverseItemAt(SL_LAUNCH.reverse_first + place);
+  ReverseItem item = ReverseItems(SL_LAUNCH.reverse_items).at[place];
   if (item.number.z == 0u) return noRay();
   return reverseRay(item, Faces(SL_LAUNCH.faces).at[reverseFace(item, k)], k, params);
 }

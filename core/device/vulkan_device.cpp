@@ -32,6 +32,8 @@ class VulkanDevice final : public Device {
     count_ = VulkanStage::list(context_, "count_bits");
     sum_ = VulkanStage::list(context_, "sum_blocks");
     write_ = VulkanStage::list(context_, "write_indices");
+    edges_ = VulkanStage::list(context_, "border_edges");
+    reverse_list_ = VulkanStage::list(context_, "reverse_items");
     append_ = VulkanStage::list(context_, "append_entries");
     contained_ = VulkanStage::list(context_, "insert_contained");
     faces_ = context_.buffer(6 * sizeof(Face), "faces of the view cell");
@@ -71,8 +73,10 @@ class VulkanDevice final : public Device {
     const uint32_t total = count * borderRayCount(launch_.params);
     const uint32_t words = (total + 31) / 32;
     reserve(border_hits_, launch_.border_hits, uint64_t(total) * 4, "hits of border rays");
+    reserve(border_edges_, launch_.border_edges, uint64_t(count) * 3 * sizeof(BorderEdge), "border polygons");
     reserve(bits_, launch_.bits, uint64_t(words) * 4, "bits of discontinuities");
     runner_.commands.fill(bits_, 0, uint64_t(words) * 4);
+    runner_.run(edges_, count * 3);
     discontinuities_ = traceUntilItFits([&] {
       runner_.run(tracing(border_, "trace_border"), total);
       countBits(bits_, words);
@@ -84,6 +88,8 @@ class VulkanDevice final : public Device {
   void traceReverse(uint32_t first, uint32_t count) override {
     launch_.reverse_first = first;
     const uint32_t total = count * reverseRayCount(launch_.params);
+    reserve(reverse_items_, launch_.reverse_items, uint64_t(count) * sizeof(ReverseItem), "reverse samples");
+    runner_.run(reverse_list_, count);
     traceUntilItFits([&] { runner_.run(tracing(reverse_, "trace_reverse"), total); });
   }
 
@@ -248,8 +254,9 @@ class VulkanDevice final : public Device {
   uint32_t triangle_count_;
   VulkanScene scene_;
   VulkanSet set_;
-  VulkanBuffer faces_, entries_, segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_;
-  VulkanStage count_, sum_, write_, append_, contained_;
+  VulkanBuffer faces_, entries_, segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_,
+      border_edges_, reverse_items_;
+  VulkanStage count_, sum_, write_, edges_, reverse_list_, append_, contained_;
   std::optional<VulkanStage> random_, missing_, border_, reverse_, rays_stage_;
   std::vector<RandomSegment> segments_;  ///< of the batch
   uint32_t entry_capacity_ = 0;

@@ -52,6 +52,15 @@ class VulkanRays : public testing::Test {
     return buffers_.back().address();
   }
 
+  /// What `count` work items of a list shader write, `bytes` bytes each.
+  void prepare(const char* shader, uint64& address, uint32_t count, uint64_t bytes) {
+    buffers_.push_back(context_->buffer(count * bytes, shader));
+    address = buffers_.back().address();
+    const VulkanStage stage = VulkanStage::list(*context_, shader);
+    runner_->run(stage, count);
+    runner_->takeCounts();
+  }
+
   /// The rays of a stage as the shaders make them.
   std::vector<Ray> make(uint32_t stage, uint32_t count) {
     const uint64_t bytes = count * sizeof(Ray);
@@ -125,6 +134,7 @@ TEST_F(VulkanRays, BorderAndReverse) {
   const uint32_t per_entry = borderRayCount(params_);
   const auto total = static_cast<uint32_t>(entries.size() * per_entry);
   runner_->launch.entries = put(entries);
+  prepare("border_edges", runner_->launch.border_edges, uint32_t(entries.size()) * 3, sizeof(BorderEdge));
   const std::vector<Ray> made = make(kStageBorder, total);
   std::vector<Ray> border(total);
   for (uint32_t i = 0; i < total; ++i) {
@@ -147,6 +157,7 @@ TEST_F(VulkanRays, BorderAndReverse) {
   runner_->launch.items_before = 0xfffffff0ull;  // running numbers past 32 bits
   const uint32_t per_item = reverseRayCount(params_);
   const auto reverse_total = static_cast<uint32_t>(places.size() * per_item);
+  prepare("reverse_items", runner_->launch.reverse_items, uint32_t(places.size()), sizeof(ReverseItem));
   const std::vector<Ray> reverse = make(kStageReverse, reverse_total);
   uint32_t excluded = 0;
   for (uint32_t i = 0; i < reverse_total; ++i) {
