@@ -9,6 +9,7 @@
 #include "core/crosscheck/crosscheck.h"
 #include "core/crosscheck/crosscheck_report.h"
 #include "core/crosscheck/place.h"
+#include "core/crosscheck/pvs_difference.h"
 #include "core/error.h"
 #include "core/report/progress.h"
 #include "core/report/text.h"
@@ -23,7 +24,8 @@ struct CrosscheckCommand {
   double scale = 1, move = 0;
   CrosscheckOptions options;
   CrosscheckLimits limits;
-  bool repair = false, spatial_splits = false;
+  bool repair = false, spatial_splits = false, pvs = false;
+  uint32_t n_rand = 1'000'000;
 };
 
 /// Rewrites one line on a terminal; elsewhere says one every few seconds.
@@ -46,6 +48,28 @@ class Progress {
   bool terminal_ = terminalColumns(stdout) > 0;
   std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
 };
+
+/// Bakes every cell on the first device and on each other one, says and returns how the sets differ.
+Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const Bvh& bvh,
+                     const std::vector<ViewCell>& cells, std::span<Device* const> devices) {
+  const Judge judge(scene, bvh);
+  BakeParams params;
+  params.n_rand = command.n_rand;
+  params.validation_rays = 0;
+  params.seed = command.options.seed;
+  Json pairs = Json::array();
+  for (size_t d = 1; d < devices.size(); ++d) {
+    std::vector<PvsDifference> differences;
+    for (uint32_t c = 0; c < cells.size(); ++c) {
+      differences.push_back(
+          comparePvs(judge, scene, cells[c], c, *devices[0], *devices[d], params, command.options.rounding));
+    }
+    const std::string first = devices[0]->info().id, other = devices[d]->info().id;
+    std::fputs(pvsDifferenceTable(first, other, differences).c_str(), stdout);
+    pairs.push_back(pvsDifferenceJson(first, other, differences));
+  }
+  return pairs;
+}
 
 void run(const CrosscheckCommand& command) {
   if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
@@ -77,9 +101,12 @@ void run(const CrosscheckCommand& command) {
   std::fputs(crosscheckTable(report).c_str(), stdout);
   fmt::print("traced in {}, judged in {}\n", shortDuration(report.trace_seconds),
              shortDuration(report.judge_seconds));
+  Json json = crosscheckJson(head, report);
+  if (command.pvs && stop.exitCode() == 0)
+    json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers);
   if (!command.report.empty()) {
     OutputFile file(command.report);
-    file.write(jsonText(crosscheckJson(head, report)));
+    file.write(jsonText(json));
     file.commit();
   }
   if (stop.exitCode() != 0) throw ExitCode{stop.exitCode()};
@@ -149,6 +176,11 @@ void addCrosscheckCommand(CLI::App& app) {
       ->type_name("R.json");
   command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
   command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");
+  command->add_flag("--pvs", options->pvs, "also bake on each device, and explain how the sets differ");
+  command->add_option("--n-rand", options->n_rand, "random rays an iteration of these bakes")
+      ->check(CLI::Range(1u, 4294967293u).description(""))
+      ->type_name("N")
+      ->capture_default_str();
   declareLimits(*command, options->limits);
   command->callback([options] {
     for (const std::string& name : options->kinds) {

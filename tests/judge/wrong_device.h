@@ -9,7 +9,8 @@
 
 namespace sightline::judge_test {
 
-/// The cpu device, but for the answers of traceRays that `change` changes. Its bakes are right.
+/// The cpu device, but for the answers of traceRays that `change` changes, and its sets, which lack the
+/// triangles that loseFromSet names.
 class WrongDevice final : public Device {
  public:
   /// Changes the answer to a ray; returns whether it did. Called by one thread.
@@ -35,11 +36,17 @@ class WrongDevice final : public Device {
     return device_->countMissing(segment, shifts);
   }
   DeviceCounters counters() override { return device_->counters(); }
-  std::vector<PvsEntry> readPvs() override { return device_->readPvs(); }
+  std::vector<PvsEntry> readPvs() override {
+    std::vector<PvsEntry> entries = device_->readPvs();
+    std::erase_if(entries, [&](const PvsEntry& entry) { return lost_ && lost_(entry.origin_triangle.w); });
+    return entries;
+  }
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override {
     device_->traceRays(rays, hits);
     for (size_t i = 0; i < rays.size(); ++i) changed_ += change_(rays[i], hits[i]);
   }
+
+  void loseFromSet(std::function<bool(uint32_t)> lost) { lost_ = std::move(lost); }
 
   /// Answers changed so far.
   uint64_t changed() const { return changed_; }
@@ -47,6 +54,7 @@ class WrongDevice final : public Device {
  private:
   std::unique_ptr<Device> device_;
   Change change_;
+  std::function<bool(uint32_t)> lost_;
   uint64_t changed_ = 0;
 };
 

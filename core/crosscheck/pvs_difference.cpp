@@ -1,0 +1,126 @@
+#include "core/crosscheck/pvs_difference.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/crosscheck/crosscheck_report.h"
+#include "core/report/text.h"
+
+namespace sightline {
+namespace {
+
+constexpr Verdict kAllVerdicts[] = {Verdict::kRight, Verdict::kRounded, Verdict::kMissed, Verdict::kWrong};
+
+/// Explains the triangles that are in `with` and not in `without`. found_by: place of the device of `with`.
+void explain(const Judge& judge, const CellPvs& with, const CellPvs& without,
+             const std::array<Device*, 2>& devices, uint32_t found_by, const RoundingLimit& limit,
+             PvsDifference& result) {
+  std::vector<DisputedTriangle> extra;
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < with.triangles.size(); ++i) {
+    const uint32_t triangle = with.triangles[i];
+    if (std::binary_search(without.triangles.begin(), without.triangles.end(), triangle)) continue;
+    extra.push_back({triangle, found_by, with.witnesses[i], {}, {}});
+    rays.push_back({vec4(with.witnesses[i].origin, 0), vec4(with.witnesses[i].direction, 0)});
+  }
+  result.only[found_by] = extra.size();
+  std::array<std::vector<Hit>, 2> hits;
+  for (size_t d = 0; d < 2; ++d) {
+    hits[d].resize(rays.size());
+    devices[d]->traceRays(rays, hits[d]);
+  }
+  for (size_t i = 0; i < extra.size(); ++i) {
+    DisputedTriangle& its = extra[i];
+    its.hits = {hits[0][i], hits[1][i]};
+    if (its.hits[0].triangle == its.triangle && its.hits[1].triangle == its.triangle) {
+      ++result.other_rays[found_by];
+      continue;
+    }
+    const ExactHit exact = judge.nearest(judgeRay(rays[i]));
+    for (size_t d = 0; d < 2; ++d) its.rulings[d] = rule(judge, rays[i], its.hits[d], exact, limit);
+    result.disputed.push_back(its);
+  }
+}
+
+Json hexVector(const glm::vec3& v) {
+  return {hexFloat(v.x), hexFloat(v.y), hexFloat(v.z)};
+}
+
+Json toJson(const DisputedTriangle& its, const std::array<std::string, 2>& names) {
+  Json answers = Json::array();
+  for (size_t d = 0; d < 2; ++d) {
+    const Hit& hit = its.hits[d];
+    const bool missed = hit.triangle == kNoTriangle;
+    answers.push_back({{"device", names[d]},
+                       {"triangle", missed ? Json(nullptr) : Json(hit.triangle)},
+                       {"t", missed ? Json(nullptr) : Json(hexFloat(hit.t))},
+                       {"verdict", verdictName(its.rulings[d].verdict)},
+                       {"steps_beside", its.rulings[d].steps_beside}});
+  }
+  return {{"triangle", its.triangle},
+          {"found_by", names[its.found_by]},
+          {"stage", stageName(its.witness.stage)},
+          {"origin", hexVector(its.witness.origin)},
+          {"direction", hexVector(its.witness.direction)},
+          {"answers", answers}};
+}
+
+}  // namespace
+
+uint64_t PvsDifference::count(size_t device, Verdict verdict) const {
+  return uint64_t(std::count_if(disputed.begin(), disputed.end(), [&](const DisputedTriangle& its) {
+    return its.rulings[device].verdict == verdict;
+  }));
+}
+
+PvsDifference comparePvs(const Judge& judge, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
+                         Device& first, Device& other, const BakeParams& params, const RoundingLimit& limit) {
+  const CellPvs a = bakeCell(first, scene, cell, cell_index, params);
+  const CellPvs b = bakeCell(other, scene, cell, cell_index, params);
+  PvsDifference result;
+  result.cell = cell.name;
+  result.sizes = {a.triangles.size(), b.triangles.size()};
+  explain(judge, a, b, {&first, &other}, 0, limit, result);
+  explain(judge, b, a, {&first, &other}, 1, limit, result);
+  return result;
+}
+
+std::string pvsDifferenceTable(const std::string& first, const std::string& other,
+                               const std::vector<PvsDifference>& cells) {
+  size_t width = 4;
+  for (const PvsDifference& cell : cells) width = std::max(width, cell.cell.size());
+  std::string table =
+      fmt::format("sets of {} and {}\n{:<{}}  {:>9} {:>9}  {:>8} {:>8}  {:>11}  {:>8}", first, other, "cell",
+                  width, "first", "other", "only 1st", "only 2nd", "other rays", "disputed");
+  table += "  right 1st / 2nd  rounded 1st / 2nd  missed 1st / 2nd  wrong 1st / 2nd\n";
+  for (const PvsDifference& cell : cells) {
+    table += fmt::format("{:<{}}  {:>9} {:>9}  {:>8} {:>8}  {:>11}  {:>8}", cell.cell, width, cell.sizes[0],
+                         cell.sizes[1], cell.only[0], cell.only[1], cell.other_rays[0] + cell.other_rays[1],
+                         cell.disputed.size());
+    for (const Verdict verdict : kAllVerdicts) {
+      table += fmt::format("  {:>7} / {:<6}", cell.count(0, verdict), cell.count(1, verdict));
+    }
+    table += "\n";
+  }
+  return table;
+}
+
+Json pvsDifferenceJson(const std::string& first, const std::string& other,
+                       const std::vector<PvsDifference>& cells) {
+  const std::array<std::string, 2> names{first, other};
+  Json json = {{"first", first}, {"other", other}, {"cells", Json::array()}};
+  for (const PvsDifference& cell : cells) {
+    Json its = {{"name", cell.cell},
+                {"sizes", {cell.sizes[0], cell.sizes[1]}},
+                {"only", {cell.only[0], cell.only[1]}},
+                {"other_rays", {cell.other_rays[0], cell.other_rays[1]}},
+                {"disputed", Json::array()}};
+    for (const DisputedTriangle& triangle : cell.disputed) its["disputed"].push_back(toJson(triangle, names));
+    json["cells"].push_back(its);
+  }
+  return json;
+}
+
+}  // namespace sightline

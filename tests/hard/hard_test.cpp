@@ -1,0 +1,124 @@
+// Hard cases on every device that is here, judged exactly; and docs/numerics.md must say what comes out.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+
+#include "core/crosscheck/crosscheck.h"
+#include "core/crosscheck/verify.h"
+#include "core/gvs/bake_cell.h"
+#include "tests/hard/hard_cases.h"
+
+namespace sightline {
+namespace {
+
+/// Of each kind, for each case: all of them go before the judge.
+constexpr uint64_t kRays = 250;
+
+/// Our own intersector: what it promises, it keeps on every device that runs it.
+bool isOurs(const std::string& device) {
+  return device == "cpu" || device.starts_with("opencl");
+}
+
+struct Totals {
+  uint64_t rays = 0;
+  std::array<uint64_t, kVerdicts> verdicts{};
+  std::string worst;
+};
+
+Totals trace(const hard::HardCase& c, const Bvh& bvh, Device& device) {
+  CrosscheckOptions options;
+  options.rays = kRays;
+  options.check_every = 1;
+  Device* const devices[] = {&device};
+  const CrosscheckReport report = crosscheck(c.scene, bvh, std::span(&c.cell, 1), devices, options);
+  Totals totals;
+  for (const KindReport& kind : report.kinds) {
+    totals.rays += kind.rays;
+    for (uint32_t v = 0; v < kVerdicts; ++v) totals.verdicts[v] += kind.devices[0].verdicts(Verdict(v));
+    const uint64_t bad =
+        kind.devices[0].verdicts(Verdict::kMissed) + kind.devices[0].verdicts(Verdict::kWrong);
+    if (bad > 0) totals.worst += fmt::format(" {} of {}", bad, rayKindName(kind.kind));
+  }
+  return totals;
+}
+
+/// Cells of the row of docs/numerics.md that begins with the case's name; empty: there is none.
+std::vector<std::string> documentedRow(const std::string& name) {
+  std::ifstream file(SL_SOURCE_DIR "/docs/numerics.md");
+  for (std::string line; std::getline(file, line);) {
+    if (line.rfind("| " + name + " | ", 0) != 0) continue;
+    std::vector<std::string> cells;
+    for (size_t at = 2; at < line.size();) {
+      const size_t end = line.find(" |", at);
+      if (end == std::string::npos) break;
+      cells.push_back(line.substr(at, end - at));
+      at = end + 3;
+    }
+    return cells;
+  }
+  return {};
+}
+
+std::string proofText(const CellProofs& proofs) {
+  const auto count = [&](Proof proof) { return proofs.counts[size_t(proof)]; };
+  return fmt::format("{} of {}", count(Proof::kProven) + count(Proof::kImproved) + count(Proof::kPoint),
+                     count(Proof::kProven) + count(Proof::kImproved) + count(Proof::kPoint) +
+                         count(Proof::kRounded) + count(Proof::kDisproved));
+}
+
+TEST(Hard, NoRayIsLostAndNoTriangleIsMadeUp) {
+  for (const hard::HardCase& c : hard::hardCases()) {
+    const Bvh bvh = buildBvh(c.scene.positions, c.scene.triangles);
+    for (const DeviceInfo& info : listDevices()) {
+      if (!info.unusable.empty()) continue;
+      const auto device = makeDevice(info.id, c.scene, bvh);
+      const Totals totals = trace(c, bvh, *device);
+      const uint64_t missed = totals.verdicts[size_t(Verdict::kMissed)];
+      const uint64_t wrong = totals.verdicts[size_t(Verdict::kWrong)];
+      EXPECT_GT(totals.rays, 5 * kRays) << c.name;
+      if (!isOurs(info.id)) {
+        if (missed + wrong > 0) {
+          fmt::print("{}, {}: {} missed, {} wrong of {}:{}\n", info.id, c.name, missed, wrong, totals.rays,
+                     totals.worst);
+        }
+        continue;
+      }
+      EXPECT_EQ(missed, 0u) << info.id << ", " << c.name << ":" << totals.worst;
+      EXPECT_EQ(wrong, 0u) << info.id << ", " << c.name << ":" << totals.worst;
+    }
+  }
+}
+
+TEST(Hard, TheTableInTheDocumentsIsTrue) {
+  std::string table;
+  bool same = true;
+  for (const hard::HardCase& c : hard::hardCases()) {
+    const Bvh bvh = buildBvh(c.scene.positions, c.scene.triangles);
+    const auto device = makeDevice("cpu", c.scene, bvh);
+    const Totals totals = trace(c, bvh, *device);
+    BakeParams params;
+    params.n_rand = 20'000;
+    params.max_rays = 1'000'000;
+    params.validation_rays = 0;
+    CellPvs pvs = bakeCell(*device, c.scene, c.cell, 0, params);
+    const CellProofs proofs = verifyCell(Judge(c.scene, bvh), c.scene, pvs);
+    EXPECT_EQ(proofs.counts[size_t(Proof::kDisproved)], 0u) << c.name << "\n" << verifyTable({proofs});
+
+    const double rounded = double(totals.verdicts[size_t(Verdict::kRounded)]) / double(totals.rays);
+    const std::vector<std::string> row = {
+        c.name,
+        std::to_string(c.scene.triangles.size()),
+        std::to_string(totals.rays),
+        std::to_string(totals.verdicts[size_t(Verdict::kMissed)] + totals.verdicts[size_t(Verdict::kWrong)]),
+        fmt::format("{:.1f} %", 100 * rounded),
+        proofText(proofs)};
+    table += fmt::format("| {} |\n", fmt::join(row, " | "));
+    same = same && documentedRow(c.name) == row;
+  }
+  EXPECT_TRUE(same) << "docs/numerics.md should have these rows:\n" << table;
+}
+
+}  // namespace
+}  // namespace sightline
