@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <array>
 #include <chrono>
 
 #include "core/cli/bake_options.h"
@@ -82,6 +83,10 @@ void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, 
 
 /// Bakes what is missing, with progress. Returns the exit code.
 int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Bake& bake) {
+  if (!bake.partProblem().empty()) {
+    say(fmt::format("{}: cut off or damaged after {} whole cells ({}); the rest is baked again",
+                    bake.partFile().string(), bake.resumed(), bake.partProblem()));
+  }
   if (bake.resumed() != 0) {
     say(fmt::format("{}: goes on after {} of {} cells, begun on {}", bake.partFile().string(), bake.resumed(),
                     bake.head().planned.size(), bake.head().device));
@@ -133,6 +138,9 @@ void writeReport(const BakeOptions& options, const Bake& bake, BakeReport& repor
 
 void runBake(const BakeOptions& options) {
   const auto start = std::chrono::steady_clock::now();
+  checkParams(options.params);
+  requireSeparate(std::array{options.out, options.report}, std::array{options.scene, options.cells});
+  if (!options.pictures.empty()) makeFolder(options.pictures);
   if (!options.report.empty()) OutputFile probe(options.report);  // fail before the work, not after it
   const Scene scene = loadScene(options.scene, {.repair = options.repair});
   Bake bake(inputsOf(options, scene), options.out, options.overwrite);

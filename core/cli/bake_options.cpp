@@ -5,23 +5,13 @@
 #include <limits>
 #include <map>
 
+#include "core/cli/number_checks.h"
 #include "core/device/device.h"
 
 namespace sightline {
 namespace {
 
 constexpr const char* kParamsGroup = "Parameters (they decide the result)";
-
-/// CLI11's own range shows its limits as 4.29497e+09 and lets "nan" pass.
-CLI::Validator between(double low, double high) {
-  return CLI::Validator(
-      [low, high](std::string& text) {
-        double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && value >= low && value <= high) return std::string();
-        return fmt::format("{} is not a number from {} to {}", text, low, high);
-      },
-      "");
-}
 
 /// Whether makeDevice may know the name: said before the scene is loaded.
 CLI::Validator deviceName() {
@@ -63,7 +53,8 @@ void declareParams(CLI::App& command, BakeParams& params) {
   number("--max-seconds", params.max_seconds, "stop a cell after so many seconds (0: no limit)");
   count("--batch-rays", params.batch_rays, 4096, 1u << 28, "rays of a border or reverse batch at most");
   count("--validation-rays", params.validation_rays, 0, 1e15, "rays that measure what a cell missed");
-  command.add_option("--seed", params.seed, "seed of the random rays")
+  command.add_option("--seed", params.seed, "seed of the random rays, 0 to 2^64 - 1")
+      ->check(wholeNumber())
       ->type_name("N")
       ->capture_default_str()
       ->group(kParamsGroup);

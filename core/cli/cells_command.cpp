@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +11,7 @@
 #include "core/cli/commands.h"
 #include "core/error.h"
 #include "core/scene/contained.h"
+#include "core/scene/file_io.h"
 #include "core/scene/place_cells.h"
 
 namespace sightline {
@@ -117,6 +119,9 @@ void run(CellsArguments arguments) {
   arguments.grid_options.free_side = arguments.free_side == "front"  ? FreeSide::kFront
                                      : arguments.free_side == "back" ? FreeSide::kBack
                                                                      : FreeSide::kAny;
+  std::vector<std::filesystem::path> inputs(arguments.path.begin(), arguments.path.end());
+  inputs.push_back(arguments.scene);
+  requireSeparate(std::array<std::filesystem::path, 1>{arguments.output}, inputs);
   const Scene scene = loadScene(arguments.scene);
   const std::vector<ViewCell> cells =
       arguments.grid.empty() ? placePath(scene, arguments) : placeGrid(scene, arguments.grid_options);

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -40,6 +41,7 @@ void runExport(const ExportOptions& options) {
         fmt::format("--format {} needs --scene: a .pvs file holds ids, not triangles", options.format),
         kExitUsage);
   }
+  requireSeparate(std::array{options.out}, std::array{options.pvs, options.scene});
   const PvsFile pvs = loadFinishedCells(options.pvs);
   const CellPvs& cell = chooseCell(pvs, options.cell, options.pvs);
   std::optional<Scene> scene;

@@ -32,7 +32,10 @@ std::string cellLine(const ViewCell& cell) {
 
 bool isPvs(const std::filesystem::path& file) {
   char start[sizeof(kPvsMagic)] = {};
-  std::ifstream(file, std::ios::binary).read(start, sizeof(start));
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored)) {  // a pipe would keep us waiting
+    std::ifstream(file, std::ios::binary).read(start, sizeof(start));
+  }
   const std::string extension = lowerExtension(file);
   return std::memcmp(start, kPvsMagic, sizeof(start)) == 0 || extension == ".pvs" || extension == ".part";
 }

@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -8,10 +9,12 @@
 #include "bvh/bvh.h"
 #include "core/cli/commands.h"
 #include "core/device/device.h"
+#include "core/error.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/report/picture.h"
+#include "core/scene/file_io.h"
 #include "core/scene/scene.h"
 
 namespace sightline {
@@ -35,6 +38,10 @@ std::string missingList(const Picture& picture) {
 }
 
 void draw(const PictureCommand& command) {
+  if (lowerExtension(command.output) != ".png") {
+    throw Error(fmt::format("{}: must end with .png", command.output.string()), kExitUsage);
+  }
+  requireSeparate(std::array{command.output}, std::array{command.scene, command.pvs});
   const PvsFile pvs = loadFinishedCells(command.pvs);
   const CellPvs& cell = chooseCell(pvs, command.cell, command.pvs);
   const Scene scene = loadScene(command.scene, {.repair = command.repair});

@@ -1,9 +1,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <array>
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/number_checks.h"
+#include "core/scene/file_io.h"
 #include "core/scene/generate.h"
 
 namespace sightline {
@@ -18,6 +21,7 @@ struct SceneArguments {
 };
 
 void run(const SceneArguments& arguments) {
+  requireSeparate(std::array<std::filesystem::path, 2>{arguments.output, arguments.cells}, {});
   const std::vector<ViewCell> cells = generateCells(arguments.name, arguments.triangles, arguments.seed);
   const Scene scene = generateScene(arguments.name, arguments.triangles, arguments.seed);
   saveScene(scene, arguments.output);
@@ -52,8 +56,10 @@ void addSceneCommand(CLI::App& app) {
   command
       ->add_option("--triangles", arguments->triangles,
                    "How many, at most: 1000 to 20000000. Extent and detail grow with it")
+      ->check(wholeNumber())
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Another seed, another scene of the kind")
+      ->check(wholeNumber())
       ->capture_default_str();
   command->add_option("--cells", arguments->cells,
                       "Also write ten view cells in the scene's free space to this .json file");

@@ -87,7 +87,12 @@ class CpuDevice final : public Device {
         tracer_(scene, bvh),
         workers_(tbb::global_control::max_allowed_parallelism, threadCount(options)),
         arena_(static_cast<int>(threadCount(options))),
-        set_(static_cast<uint32_t>(scene.triangles.size()), wantsHash(options)) {}
+        set_(static_cast<uint32_t>(scene.triangles.size()), wantsHash(options)) {
+    const uint64_t bytes = residentBytes() + set_.bytes();
+    if (options.memory_budget_bytes == 0 || bytes <= options.memory_budget_bytes) return;
+    throw Error(fmt::format("cpu: scene, tree and set take {} bytes, more than the {} of --memory-budget",
+                            bytes, options.memory_budget_bytes));
+  }
 
   DeviceInfo info() const override { return cpuDeviceInfo(); }
 

@@ -92,6 +92,7 @@ OpenClContext::OpenClContext(const std::string& selector) {
   info_ = device.info;
   is_cpu_ = (device.type & CL_DEVICE_TYPE_CPU) != 0;
   max_allocation_ = clDeviceValue<cl_ulong>(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+  memory_limit_ = info_.memory_bytes;
   compute_units_ = clDeviceValue<cl_uint>(device_, CL_DEVICE_MAX_COMPUTE_UNITS);
   cl_int code = CL_SUCCESS;
   context_ =
@@ -143,14 +144,15 @@ ClBuffer OpenClContext::buffer(uint64_t bytes, const char* what) {
   }
   cl_int code = CL_MEM_OBJECT_ALLOCATION_FAILURE;
   ClBuffer buffer;
-  if (*allocated_ + bytes <= info_.memory_bytes) {
+  if (*allocated_ + bytes <= memory_limit_) {
     buffer.memory_ = ClHandle<cl_mem, clReleaseMemObject>(
         clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, bytes, nullptr, &code));
   }
   if (code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES) {
     throw Error(fmt::format(
-        "{} ({}): the {} take {:.0f} MiB, but {:.0f} of the device's {:.0f} MiB are in use{}", info_.id,
-        info_.name, what, mebibytes(bytes), mebibytes(*allocated_), mebibytes(info_.memory_bytes), advice));
+        "{} ({}): the {} take {:.1f} MiB, but {:.1f} of the {:.1f} MiB that it may use are in use{}",
+        info_.id, info_.name, what, mebibytes(bytes), mebibytes(*allocated_), mebibytes(memory_limit_),
+        advice));
   }
   checkCl(code, "clCreateBuffer");
   buffer.bytes_ = bytes;

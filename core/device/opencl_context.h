@@ -2,6 +2,7 @@
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -76,6 +77,9 @@ class OpenClContext {
   uint32_t computeUnits() const { return compute_units_; }
   uint64_t allocatedBytes() const { return *allocated_; }
 
+  /// From now on buffers take so many bytes in all at most.
+  void limitMemory(uint64_t bytes) { memory_limit_ = std::min(bytes, info_.memory_bytes); }
+
   /// Compiles the embedded program (cl_kernels/program.cl) with further options such as "-DSL_PACKET=8".
   /// The Error of a failed build holds the log.
   void build(const std::string& options);
@@ -119,6 +123,7 @@ class OpenClContext {
   DeviceInfo info_;
   bool is_cpu_ = false;
   uint64_t max_allocation_ = 0;
+  uint64_t memory_limit_ = 0;  ///< bytes that all buffers may take
   uint32_t compute_units_ = 0;
   std::shared_ptr<uint64_t> allocated_ = std::make_shared<uint64_t>(0);
   ClHandle<cl_context, clReleaseContext> context_;

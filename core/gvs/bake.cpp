@@ -104,6 +104,7 @@ bool Bake::openComplete() {
 
 void Bake::goOnAfterPart() {
   const PartialPvs left = loadPartialPvs(part_);
+  part_problem_ = left.problem;
   if (left.whole_bytes == 0) return;
   requireSameInputs(left.pvs, head_, part_);
   writer_->goOn(left);

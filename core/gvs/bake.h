@@ -44,6 +44,8 @@ class Bake {
   const std::vector<CellSummary>& finished() const { return finished_; }
   /// How many of them an earlier run left.
   size_t resumed() const { return resumed_; }
+  /// What was wrong in the part file after these cells: what follows is baked again. Empty: nothing.
+  const std::string& partProblem() const { return part_problem_; }
   /// Head of the file: inputs and planned cells; the device is the one on which the bake began.
   const PvsFile& head() const { return head_; }
   const std::filesystem::path& partFile() const { return part_; }
@@ -62,6 +64,7 @@ class Bake {
   std::unique_ptr<PvsWriter> writer_;
   std::vector<CellSummary> finished_;
   size_t resumed_ = 0;
+  std::string part_problem_;
   bool complete_ = false;
   bool begun_ = false;
 };

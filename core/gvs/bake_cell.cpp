@@ -52,24 +52,6 @@ std::vector<uint32_t> raysByArea(std::span<const Face> faces, uint32_t total) {
   return counts;
 }
 
-void checkParams(const BakeParams& p) {
-  const auto require = [](bool good, const char* line) {
-    if (!good) throw Error(line, kExitUsage);
-  };
-  require(p.n_rand >= 1 && p.n_rand <= 0xfffffffdu, "n-rand must be 1 .. 4294967293");
-  require(p.n_abs_edge <= 1000, "n-abs-edge must be 0 .. 1000");
-  require(p.n_rs_edge <= 1000, "n-rs-edge must be 0 .. 1000");
-  require(p.n_rs_area <= 100'000, "n-rs-area must be 0 .. 100000");
-  require(p.batch_rays >= 4096 && p.batch_rays <= 1u << 28, "batch-rays must be 4096 .. 268435456");
-  require(p.quiet_iterations >= 1, "quiet-iterations must be at least 1");
-  const auto distance = [](float x) { return std::isfinite(x) && x >= 0; };
-  require(distance(p.delta_abs) && distance(p.delta_abs_relative) && p.delta_abs + p.delta_abs_relative > 0,
-          "delta-abs and delta-abs-relative must be finite, not negative, and one of them above 0");
-  require(distance(p.delta_rs) && distance(p.delta_rs_relative),
-          "delta-rs and delta-rs-relative must be finite and not negative");
-  require(std::isfinite(p.max_seconds) && p.max_seconds >= 0, "max-seconds must be finite and not negative");
-}
-
 /// One cell's bake in progress.
 class CellBake {
  public:
@@ -244,7 +226,9 @@ class CellBake {
     p.new_triangles = iteration_new_;
     p.queued = pvs_size_ - explored_;
     p.seconds = seconds();
-    p.seconds_left = p.rays == 0 ? 0 : raysDue() * p.seconds / double(p.rays);
+    // Before the first border rays nobody knows how much there is to explore.
+    const bool known = stats_.border.rays > 0 || stats_.iterations > 1 || validating_;
+    p.seconds_left = known ? raysDue() * p.seconds / double(p.rays) : -1;
     callback_(p);
   }
 
@@ -300,6 +284,26 @@ void fillSet(const std::vector<PvsEntry>& entries, CellPvs& pvs) {
 }
 
 }  // namespace
+
+void checkParams(const BakeParams& p) {
+  const auto require = [](bool good, const char* line) {
+    if (!good) throw Error(line, kExitUsage);
+  };
+  require(p.n_rand >= 1 && p.n_rand <= 0xfffffffdu, "n-rand must be 1 .. 4294967293");
+  require(p.n_abs_edge <= 1000, "n-abs-edge must be 0 .. 1000");
+  require(p.n_rs_edge <= 1000, "n-rs-edge must be 0 .. 1000");
+  require(p.n_rs_area <= 100'000, "n-rs-area must be 0 .. 100000");
+  require(p.batch_rays >= 4096 && p.batch_rays <= 1u << 28, "batch-rays must be 4096 .. 268435456");
+  require(p.quiet_iterations >= 1, "quiet-iterations must be at least 1");
+  require(p.threshold >= 1 || p.max_rays > 0 || p.max_seconds > 0,
+          "threshold 0 never ends: give max-rays or max-seconds too");
+  const auto distance = [](float x) { return std::isfinite(x) && x >= 0; };
+  require(distance(p.delta_abs) && distance(p.delta_abs_relative) && p.delta_abs + p.delta_abs_relative > 0,
+          "delta-abs and delta-abs-relative must be finite, not negative, and one of them above 0");
+  require(distance(p.delta_rs) && distance(p.delta_rs_relative),
+          "delta-rs and delta-rs-relative must be finite and not negative");
+  require(std::isfinite(p.max_seconds) && p.max_seconds >= 0, "max-seconds must be finite and not negative");
+}
 
 CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
                  const BakeParams& params, const ProgressCallback& progress, const std::atomic<bool>* stop) {

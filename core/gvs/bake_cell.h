@@ -19,7 +19,8 @@ struct BakeProgress {
   uint64_t queued = 0;         ///< entries still to explore
   double seconds = 0;          ///< since the cell's start
   double seconds_left = 0;  ///< estimate for this cell: rays still known to be due (this iteration's random
-                            ///< rays, queued entries, validation); grows when new triangles turn up
+                            ///< rays, queued entries, validation); grows when new triangles turn up.
+                            ///< Negative: not known yet, before the first border rays
 };
 
 /// Told about the bake; called on the caller's thread.
@@ -27,6 +28,9 @@ using ProgressCallback = std::function<void(const BakeProgress&)>;
 
 /// Thrown by bakeCell when *stop became true: nothing of the cell is kept.
 struct Interrupted {};
+
+/// Throws Error (wrong usage) that names the parameter that is out of range.
+void checkParams(const BakeParams& params);
 
 /// Computes the PVS of one cell by GVS++ (Koch and Wimmer 2021; thesis, algorithms 5.1 and 6.1 to 6.4) on
 /// `device`, which holds `scene`. cell_index numbers the cell in its bake: it enters the random shifts only.

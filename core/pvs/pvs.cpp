@@ -118,8 +118,9 @@ PartialPvs loadPartialPvs(const std::filesystem::path& part) {
       readCell(section, left.pvs);
       left.whole_bytes = section.end;
     }
-  } catch (const std::string&) {
-    // The cell that was being written when the bake was cut off.
+    if (left.whole_bytes == 0 && !bytes.empty()) left.problem = "cut off in its head";
+  } catch (const std::string& problem) {
+    left.problem = problem;
   }
   left.torn_bytes = bytes.size() - left.whole_bytes;
   return left;

@@ -13,7 +13,8 @@ namespace sightline {
 struct PartialPvs {
   PvsFile pvs;               ///< ids and witnesses included
   uint64_t whole_bytes = 0;  ///< up to here the file is sound; 0: not even its head is there
-  uint64_t torn_bytes = 0;   ///< of a cell that was being written, after that
+  uint64_t torn_bytes = 0;   ///< after that: a cell that was being written, or damage
+  std::string problem;       ///< what is wrong with them; empty: nothing, or the end is there already
 };
 
 /// Reads a part file. Throws Error if it cannot be read or is another kind or version of file.

@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "core/error.h"
+#include "core/scene/file_io.h"
 
 namespace sightline {
 
@@ -18,11 +18,7 @@ std::string pictureName(const std::string& cell_name, uint32_t index) {
 
 double saveCellPictures(const TraceRays& trace, const Scene& scene, const CellPvs& cell, uint32_t index,
                         const std::filesystem::path& folder) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem) {
-    throw Error(fmt::format("{}: cannot make this folder: {}", folder.string(), problem.message()));
-  }
+  makeFolder(folder);
   const std::string name = pictureName(cell.cell.name, index);
   savePng(renderOutside(trace, scene, cell).image, folder / (name + "-outside.png"));
   const Picture inside = renderInside(trace, scene, cell);

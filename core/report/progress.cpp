@@ -96,6 +96,11 @@ ProgressPrinter::ProgressPrinter(std::FILE* out, uint32_t columns, std::vector<V
 
 double ProgressPrinter::secondsLeft(uint32_t index, const BakeProgress& progress) const {
   // Cells to come are taken to last as long as the mean of those known, this one by its estimate.
+  if (progress.seconds_left < 0) {
+    if (finished_cells_ == 0) return -1;
+    const double mean = finished_seconds_ / double(finished_cells_);
+    return std::max(0.0, mean - progress.seconds) + mean * double(planned_.size() - index - 1);
+  }
   const double mean =
       (finished_seconds_ + progress.seconds + progress.seconds_left) / double(finished_cells_ + 1);
   return progress.seconds_left + mean * double(planned_.size() - index - 1);

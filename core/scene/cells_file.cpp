@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/scene/file_io.h"
 #include "core/scene/json_text.h"
+#include "core/scene/scene.h"
 #include "core/scene/view_cell.h"
 
 namespace sightline {
@@ -72,10 +73,9 @@ void checkCell(const ViewCell& cell, const std::string& file, const std::string&
   checkFinite(cell.rotation, file, place + ".rotation");
   checkSize(cell.size, file, place + ".size");
   for (const glm::vec3& corner : cellCorners(cell)) {
-    if (!std::isfinite(corner.x) || !std::isfinite(corner.y) || !std::isfinite(corner.z) ||
-        !std::isfinite(float(cell.size.x)) || !std::isfinite(float(cell.size.y)) ||
-        !std::isfinite(float(cell.size.z))) {
-      fail(file, place, "reaches beyond the range of single precision");
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::abs(corner[axis]) <= kLargestCoordinate) continue;
+      fail(file, place, "reaches farther than 2^40 from the origin, too far to trace: scale scene and cells");
     }
   }
 }

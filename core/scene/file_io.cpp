@@ -17,6 +17,9 @@ std::string reason(int error_number) {
   return std::strerror(error_number);
 }
 
+/// Links in a row that are followed, as Linux does.
+constexpr int kLongestLinkChain = 40;
+
 /// Closes a file descriptor at the end of a scope.
 struct Descriptor {
   int value = -1;
@@ -28,7 +31,8 @@ struct Descriptor {
 }  // namespace
 
 FileBytes readFile(const std::filesystem::path& file) {
-  const Descriptor descriptor{open(file.c_str(), O_RDONLY | O_CLOEXEC)};
+  // Not blocking, so that a pipe without a writer is refused below and not waited for.
+  const Descriptor descriptor{open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
   if (descriptor.value < 0) throw Error(fmt::format("{}: cannot open: {}", file.string(), reason(errno)));
   struct stat status {};
   if (fstat(descriptor.value, &status) != 0) {
@@ -55,6 +59,14 @@ FileBytes readFile(const std::filesystem::path& file) {
 }
 
 OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)) {
+  std::error_code ignored;
+  for (int links = 0; links < kLongestLinkChain && std::filesystem::is_symlink(file_, ignored); ++links) {
+    file_ = file_.parent_path() / std::filesystem::read_symlink(file_, ignored);
+  }
+  if (std::filesystem::exists(file_, ignored) && !std::filesystem::is_regular_file(file_, ignored)) {
+    throw Error(
+        fmt::format("{}: is not a regular file, so it is not replaced; name another", file_.string()));
+  }
   temporary_ = file_;
   temporary_ += fmt::format(".tmp{}", getpid());
   stream_ = std::fopen(temporary_.c_str(), "wbe");
@@ -81,6 +93,37 @@ void OutputFile::commit() {
   std::FILE* stream = stream_;
   stream_ = nullptr;
   if (std::fclose(stream) != 0) fail("close");
+}
+
+void makeFolder(const std::filesystem::path& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem) {
+    throw Error(fmt::format("{}: cannot make this folder: {}", folder.string(), problem.message()));
+  }
+}
+
+void requireSeparate(std::span<const std::filesystem::path> outputs,
+                     std::span<const std::filesystem::path> inputs) {
+  const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
+    std::error_code code;
+    if (std::filesystem::equivalent(a, b, code)) return true;
+    return std::filesystem::weakly_canonical(a, code) == std::filesystem::weakly_canonical(b, code);
+  };
+  for (size_t i = 0; i < outputs.size(); ++i) {
+    if (outputs[i].empty()) continue;
+    for (const std::filesystem::path& input : inputs) {
+      if (input.empty() || !same(outputs[i], input)) continue;
+      throw Error(
+          fmt::format("{}: would be read and replaced; name another file to write", outputs[i].string()),
+          kExitUsage);
+    }
+    for (size_t other = 0; other < i; ++other) {
+      if (outputs[other].empty() || !same(outputs[i], outputs[other])) continue;
+      throw Error(fmt::format("{}: would be written twice; name another file", outputs[i].string()),
+                  kExitUsage);
+    }
+  }
 }
 
 std::string lowerExtension(const std::filesystem::path& file) {

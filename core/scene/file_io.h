@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,7 +20,8 @@ struct FileBytes {
 FileBytes readFile(const std::filesystem::path& file);
 
 /// A file that appears under its name only when it is complete: bytes go to a temporary name beside it,
-/// commit() renames. Without commit the temporary file is removed. All throw Error with file and reason.
+/// commit() renames. Without commit the temporary file is removed. A link is followed; what is there and is
+/// no regular file (a folder, a device, a pipe) is not replaced. All throw Error with file and reason.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path file);
@@ -38,6 +40,14 @@ class OutputFile {
   std::filesystem::path temporary_;
   std::FILE* stream_ = nullptr;
 };
+
+/// Makes the folder and those above it, where they are missing. Throws Error.
+void makeFolder(const std::filesystem::path& folder);
+
+/// Throws Error if one of the files to write (empty: none) is one of those to read, or another to write: a
+/// slip of the hand must not cost a scene.
+void requireSeparate(std::span<const std::filesystem::path> outputs,
+                     std::span<const std::filesystem::path> inputs);
 
 /// The extension in lower case, with its dot: ".obj"; empty if there is none.
 std::string lowerExtension(const std::filesystem::path& file);

@@ -21,12 +21,18 @@
 namespace sightline {
 namespace {
 
+/// What some editors put before UTF-8 text.
+constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
 /// Serves a text line by line. Makes every line end a '\n', and in lines of vertices and faces joins those
 /// continued by a backslash and blanks out comments.
 class LineBuffer : public std::streambuf {
  public:
   explicit LineBuffer(const FileBytes& bytes)
-      : begin_(bytes.data.get()), end_(begin_ + bytes.size), line_(begin_), next_(begin_) {}
+      : begin_(bytes.data.get() + (bytes.view().starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0)),
+        end_(bytes.data.get() + bytes.size),
+        line_(begin_),
+        next_(begin_) {}
 
   /// The line last served, without its end.
   std::string_view line() const {

@@ -22,20 +22,26 @@ struct SceneObject {
 
 /// A static scene: nothing but triangles. A triangle's id is its index in `triangles`, which follows file
 /// order over all meshes and instances. Invariants (kept by loadScene and the generators): at least one
-/// triangle, fewer than 2^32 - 2; every index is in range; every position is finite; the objects' ranges
+/// triangle, fewer than 2^32 - 2; every index is in range; every coordinate is at most
+/// kLargestCoordinate in magnitude; the objects' ranges
 /// are ascending, disjoint and cover all triangles.
 struct Scene {
   std::vector<glm::vec3> positions;   ///< world space, y up by custom; units are the file's
   std::vector<glm::uvec3> triangles;  ///< indices into positions
   std::vector<SceneObject> objects;
   uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
-  uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or non-finite vertex
+  uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or vertex
   uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND: traced as opaque
   uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false: traced as two-sided
 };
 
+/// Coordinates of scenes and view cells reach so far at most, to either side of 0: products of three
+/// distances, which the intersection test takes, must stay within single precision.
+inline constexpr float kLargestCoordinate = 0x1p40f;
+
 struct SceneLoadOptions {
-  /// Drop triangles with an index out of range or a non-finite vertex instead of failing.
+  /// Drop triangles with an index out of range or a coordinate that is not finite or too large instead of
+  /// failing.
   bool repair = false;
 };
 

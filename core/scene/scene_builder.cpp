@@ -14,8 +14,10 @@
 namespace sightline {
 namespace {
 
-bool isFinite(const glm::vec3& v) {
-  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+/// False for NaN too.
+bool isInRange(const glm::vec3& v) {
+  return std::abs(v.x) <= kLargestCoordinate && std::abs(v.y) <= kLargestCoordinate &&
+         std::abs(v.z) <= kLargestCoordinate;
 }
 
 /// Length of the UTF-8 sequence at the start of the text, 0 if it is not one (RFC 3629).
@@ -74,13 +76,16 @@ std::string cleanName(std::string_view name) {
 
 void SceneBuilder::addPosition(const glm::vec3& position, const Place& place) {
   if (scene_.positions.size() >= kMaxElements) throw Error(fmt::format("{}: too many vertices", place()));
-  if (isFinite(position)) {
+  if (isInRange(position)) {
     scene_.positions.push_back(position);
     return;
   }
   if (!repair_) {
-    throw Error(fmt::format("{}: vertex ({}, {}, {}) is not finite; --repair drops its triangles", place(),
-                            position.x, position.y, position.z));
+    const bool finite = std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
+    throw Error(fmt::format(
+        "{}: vertex ({}, {}, {}) is {}; --repair drops its triangles", place(), position.x, position.y,
+        position.z,
+        finite ? "farther than 2^40 from the origin, too far to trace: scale the scene" : "not finite"));
   }
   bad_vertices_.push_back(uint32_t(scene_.positions.size()));
   scene_.positions.emplace_back(0.0f);

@@ -244,6 +244,27 @@ TEST(BakeCommand, SameOnAnyNumberOfPoclThreads) {
   }
 }
 
+TEST(BakeCommand, SaysWhatADamagedPartFileLost) {
+  const Workplace place(4);
+  ASSERT_EQ(runProgram(place.bake("whole.pvs")).exit_code, 0);
+  std::vector<uint8_t> bytes = readBytes(place / "whole.pvs");
+  bytes[bytes.size() / 2] ^= 1;
+  writeBytes(place / "x.pvs.part", bytes);
+  const ProgramRun run = runProgram(place.bake("x.pvs"));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_TRUE(contains(run, "x.pvs.part: cut off or damaged after")) << run.output;
+  expectSameBake(place, place / "x.pvs", place / "whole.pvs");
+}
+
+TEST(BakeCommand, StaysWithinItsMemoryBudgetOrSaysWhatItNeeds) {
+  const Workplace place(1);
+  for (const char* device : {"cpu", "opencl"}) {
+    const ProgramRun run = runProgram(place.bake("x.pvs", "--memory-budget 1000", device));
+    EXPECT_EQ(run.exit_code, 1) << run.output;
+    EXPECT_FALSE(std::filesystem::exists(place / "x.pvs")) << device;
+  }
+}
+
 TEST(BakeCommand, ReportIsComplete) {
   const Workplace place(2);
   const ProgramRun run = runProgram(place.bake("x.pvs", "--set hash --report " + (place / "r.json")));
@@ -297,6 +318,9 @@ TEST(BakeCommand, FailuresAreOneLineBeforeTheWork) {
   expectLine(place.bake("x.pvs", "--delta-abs nan"), 2, "--delta-abs");
   expectLine(place.bake("x.pvs", "--set other"), 2, "--set");
   expectLine(place.bake("x.pvs", "--nonsense"), 2, "--help");
+  expectLine(place.bake("x.pvs", "--seed -1"), 2, "--seed");
+  expectLine(place.bake("x.pvs", "--seed 18446744073709551616"), 2, "--seed");
+  expectLine(place.bake("x.pvs", "--threshold 0"), 2, "never ends");
   expectLine("bake a.obj --cells c.json -o x.pvs --device gpu", 2, "sightline devices");
   expectLine("", 2, "--help");
   writeBytes(place / "damaged.pvs", {1, 2, 3});

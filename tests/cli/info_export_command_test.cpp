@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -134,6 +135,48 @@ TEST(ExportCommand, SaysWhatItNeeds) {
   std::ofstream(files / "other.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n";
   expectFails(start + "spot --format obj -o " + (files / "x.obj") + " --scene " + (files / "other.obj"), 1,
               "another scene");
+}
+
+/// A slip in a file's name must not cost the scene, the cells or the bake.
+TEST(OutputFiles, NeverReplaceWhatIsRead) {
+  const Files files;
+  const std::string scene = readText(files.scene()), cells = readText(files.cells()),
+                    pvs = readText(files.pvs());
+  const auto quick = fmt::format("bake {} --cells {} --device cpu --n-rand 1000 --validation-rays 0 ",
+                                 files.scene(), files.cells());
+  expectFails(quick + "-o " + files.scene(), 2, "would be read and replaced");
+  expectFails(quick + "-o " + files.pvs() + " --report " + files.scene(), 2, "would be read and replaced");
+  expectFails(quick + "-o " + files.pvs() + " --report " + files.cells(), 2, "would be read and replaced");
+  expectFails(quick + "-o " + (files / "n.pvs") + " --report " + (files / "n.pvs"), 2,
+              "would be written twice");
+  expectFails("export " + files.pvs() + " --cell 0 --format ids -o " + files.pvs(), 2, "read and replaced");
+  expectFails("cells " + files.scene() + " --path 0,0,9 5,0,9 -o " + files.scene(), 2, "read and replaced");
+  expectFails("scene city -o " + (files / "n.obj") + " --cells " + (files / "n.obj"), 2, "written twice");
+  std::filesystem::create_symlink(files.scene(), files / "link.png");
+  expectFails("picture " + files.scene() + " " + files.pvs() + " --cell 0 -o " + (files / "link.png"), 2,
+              "read and replaced");
+  EXPECT_EQ(readText(files.scene()), scene);
+  EXPECT_EQ(readText(files.cells()), cells);
+  EXPECT_EQ(readText(files.pvs()), pvs);
+}
+
+TEST(OutputFiles, DevicesAndPipesAreNeitherReplacedNorWaitedFor) {
+  const Files files;
+  ASSERT_EQ(::mkfifo((files / "pipe").c_str(), 0600), 0);
+  const std::string ids = "export " + files.pvs() + " --cell 0 --format ids -o ";
+  expectFails(ids + (files / "pipe"), 1, "is not a regular file");
+  expectFails(ids + "/dev/null", 1, "is not a regular file");
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  std::filesystem::create_symlink(files / "pipe", files / "pipe.obj");
+  expectFails("info " + (files / "pipe.obj"), 1, "is not a regular file");
+}
+
+TEST(OutputFiles, ALinkIsFollowed) {
+  const Files files;
+  std::filesystem::create_symlink(files / "ids.txt", files / "link.txt");
+  expectSays("export " + files.pvs() + " --cell 0 --format ids -o " + (files / "link.txt"), {"2 triangles"});
+  EXPECT_TRUE(std::filesystem::is_symlink(files / "link.txt"));
+  EXPECT_EQ(readText(files / "ids.txt"), "0\n3\n");
 }
 
 }  // namespace

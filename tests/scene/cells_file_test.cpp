@@ -72,7 +72,8 @@ TEST(CellsFile, ErrorsNameThePlace) {
       {oneCell(R"("name":"a","center":[1,1,1],"size":[1,1e-60,1])"),
        "cells.json: cells[0].size[1]: 1e-60 is too small for single precision"},
       {oneCell(R"("name":"a","center":[1,1e39,1],"size":[1,1,1])"),
-       "cells.json: cells[0]: reaches beyond the range of single precision"},
+       "cells.json: cells[0]: reaches farther than 2^40 from the origin, too far to trace: scale scene and "
+       "cells"},
       {oneCell(R"("name":"a","center":[1,1,1],"size":[1,1,1],"rotation":5)"),
        "cells.json: cells[0].rotation: expected three numbers [x, y, z]"},
       {"{\"cells\":[{" + good + "},{" + good + "}]}",

@@ -36,10 +36,10 @@ TEST(LoadObj, TrianglesAndObjects) {
 
 TEST(LoadObj, CoordinatesAreCorrectlyRounded) {
   const Scene scene = loadText("a.obj",
-                               "v 0.1 +0.2 -.3 1.0\nv 1e-50 3.4028235e38 1.17549435E-38\n"
+                               "v 0.1 +0.2 -.3 1.0\nv 1e-50 1.0995116e12 1.17549435E-38\n"
                                "v 16777217 0.30000001192092896 1.00000005960464477539062500001\nf 1 2 3\n");
   EXPECT_EQ(scene.positions[0], glm::vec3(0.1f, 0.2f, -0.3f));
-  EXPECT_EQ(scene.positions[1], glm::vec3(0.0f, FLT_MAX, FLT_MIN));
+  EXPECT_EQ(scene.positions[1], glm::vec3(0.0f, kLargestCoordinate, FLT_MIN));
   EXPECT_EQ(scene.positions[2], glm::vec3(16777216.0f, 0.3f, 1.00000012f));
 }
 
@@ -59,6 +59,12 @@ TEST(LoadObj, LineEndsContinuationsAndComments) {
     ASSERT_EQ(scene.objects.size(), 2u);
     EXPECT_EQ(scene.objects[1].name, "name");
   }
+}
+
+TEST(LoadObj, ByteOrderMarkIsSkipped) {
+  const Scene scene = loadText("a.obj", "\xef\xbb\xbf" + kSquare + "f 1 2 3\n");
+  ASSERT_EQ(scene.positions.size(), 4u);
+  EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}}));
 }
 
 TEST(LoadObj, FacesMayStandBeforeTheirVertices) {
@@ -86,6 +92,10 @@ TEST(LoadObj, ErrorsNameTheLine) {
       {"v 0 0,5 1\n", "a.obj:1: expected three numbers after \"v\""},
       {"v 0 0 0\n v 0 nan 0\n", "a.obj:2: vertex (0, nan, 0) is not finite; --repair drops its triangles"},
       {"v 0 0 0\nv 0 -inf 0\n", "a.obj:2: vertex (0, -inf, 0) is not finite; --repair drops its triangles"},
+      {"v 0 1e12 0\nv 0 1e13 0\n",
+       "a.obj:2: vertex (0, 10000000000000, 0) is farther than 2^40 from the origin, too far to trace: scale the "
+       "scene; "
+       "--repair drops its triangles"},
       {"v 0 1e39 0\n", "a.obj:1: vertex (0, inf, 0) is not finite; --repair drops its triangles"},
       {kSquare, "a.obj: holds no triangles"},
       {"", "a.obj: is empty"},
