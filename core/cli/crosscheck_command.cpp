@@ -1,10 +1,12 @@
 #include <fmt/core.h>
 
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
 #include "core/crosscheck/crosscheck.h"
 #include "core/crosscheck/crosscheck_report.h"
@@ -72,10 +74,12 @@ Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const
 }
 
 void run(const CrosscheckCommand& command) {
+  requireSeparate(std::array{command.report}, std::array{command.scene, command.cells});
   if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
   Scene scene = loadScene(command.scene, {.repair = command.repair});
   std::vector<ViewCell> cells = loadCells(command.cells);
   placeElsewhere(scene, cells, command.scale, command.move);
+  for (const std::string& name : command.devices) requireDevice(name);
   const Bvh bvh = buildBvh(scene.positions, scene.triangles, {.spatial_splits = command.spatial_splits});
   std::vector<std::unique_ptr<Device>> devices;
   std::vector<Device*> pointers;
@@ -151,6 +155,7 @@ void addCrosscheckCommand(CLI::App& app) {
       ->delimiter(',')
       ->type_name("KIND,...");
   command->add_option("--seed", options->options.seed, "seed of the rays")
+      ->check(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
   command

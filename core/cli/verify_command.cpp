@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <array>
 #include <filesystem>
 #include <memory>
 
@@ -53,6 +54,7 @@ bool pastLimits(const VerifyCommand& command, const std::vector<CellProofs>& cel
 }
 
 void run(const VerifyCommand& command) {
+  requireSeparate(std::array{command.output, command.report}, std::array{command.scene, command.pvs});
   if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
   PvsFile pvs = loadFinishedCells(command.pvs);
   if (!pvs.has_witnesses) {

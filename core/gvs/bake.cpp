@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "core/error.h"
+#include "core/scene/file_io.h"
 
 namespace sightline {
 namespace {
@@ -76,6 +77,7 @@ Bake::Bake(PvsFile wanted, std::filesystem::path file, bool overwrite)
   if (std::filesystem::is_directory(file_)) {
     throw Error(fmt::format("{}: is a folder; name a file to write", file_.string()));
   }
+  requireReplaceable(file_);
   if (!overwrite && openComplete()) return;
   writer_ = std::make_unique<PvsWriter>(part_);
   try {

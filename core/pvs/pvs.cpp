@@ -131,6 +131,7 @@ PvsFile loadFinishedCells(const std::filesystem::path& file) {
 }
 
 void savePvs(const PvsFile& pvs, const std::filesystem::path& file) {
+  requireReplaceable(file);
   auto temporary = file;
   temporary += ".tmp";
   try {

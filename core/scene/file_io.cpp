@@ -58,15 +58,18 @@ FileBytes readFile(const std::filesystem::path& file) {
   return bytes;
 }
 
+void requireReplaceable(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(file, ignored) || std::filesystem::is_regular_file(file, ignored)) return;
+  throw Error(fmt::format("{}: is not a regular file, so it is not replaced; name another", file.string()));
+}
+
 OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)) {
   std::error_code ignored;
   for (int links = 0; links < kLongestLinkChain && std::filesystem::is_symlink(file_, ignored); ++links) {
     file_ = file_.parent_path() / std::filesystem::read_symlink(file_, ignored);
   }
-  if (std::filesystem::exists(file_, ignored) && !std::filesystem::is_regular_file(file_, ignored)) {
-    throw Error(
-        fmt::format("{}: is not a regular file, so it is not replaced; name another", file_.string()));
-  }
+  requireReplaceable(file_);
   temporary_ = file_;
   temporary_ += fmt::format(".tmp{}", getpid());
   stream_ = std::fopen(temporary_.c_str(), "wbe");

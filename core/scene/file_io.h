@@ -19,9 +19,13 @@ struct FileBytes {
 /// Reads a whole regular file. Throws Error: no such file, a directory, not readable, too large.
 FileBytes readFile(const std::filesystem::path& file);
 
+/// Throws Error if something is there that must not be replaced: a folder, a device, a pipe. Links are
+/// followed.
+void requireReplaceable(const std::filesystem::path& file);
+
 /// A file that appears under its name only when it is complete: bytes go to a temporary name beside it,
-/// commit() renames. Without commit the temporary file is removed. A link is followed; what is there and is
-/// no regular file (a folder, a device, a pipe) is not replaced. All throw Error with file and reason.
+/// commit() renames. Without commit the temporary file is removed. A link is followed; what must not be
+/// replaced is not (requireReplaceable). All throw Error with file and reason.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path file);

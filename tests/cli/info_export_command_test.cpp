@@ -152,6 +152,12 @@ TEST(OutputFiles, NeverReplaceWhatIsRead) {
   expectFails("export " + files.pvs() + " --cell 0 --format ids -o " + files.pvs(), 2, "read and replaced");
   expectFails("cells " + files.scene() + " --path 0,0,9 5,0,9 -o " + files.scene(), 2, "read and replaced");
   expectFails("scene city -o " + (files / "n.obj") + " --cells " + (files / "n.obj"), 2, "written twice");
+  const std::string verify = "verify " + files.scene() + " " + files.pvs();
+  expectFails(verify + " -o " + files.scene(), 2, "read and replaced");
+  expectFails(verify + " --report " + files.pvs(), 2, "read and replaced");
+  expectFails("crosscheck " + files.scene() + " --cells " + files.cells() + " --devices cpu --report " +
+                  files.cells(),
+              2, "read and replaced");
   std::filesystem::create_symlink(files.scene(), files / "link.png");
   expectFails("picture " + files.scene() + " " + files.pvs() + " --cell 0 -o " + (files / "link.png"), 2,
               "read and replaced");
@@ -167,6 +173,8 @@ TEST(OutputFiles, DevicesAndPipesAreNeitherReplacedNorWaitedFor) {
   expectFails(ids + (files / "pipe"), 1, "is not a regular file");
   expectFails(ids + "/dev/null", 1, "is not a regular file");
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  const std::string bake = "bake " + files.scene() + " --cells " + files.cells() + " --device cpu -o ";
+  expectFails(bake + (files / "pipe"), 1, "is not a regular file");
   std::filesystem::create_symlink(files / "pipe", files / "pipe.obj");
   expectFails("info " + (files / "pipe.obj"), 1, "is not a regular file");
 }
