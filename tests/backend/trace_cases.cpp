@@ -3,41 +3,15 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <random>
 
 #include "core/shared/triangle.h"
 
 namespace sightline {
 namespace {
 
-class Random {
- public:
-  explicit Random(uint32_t seed) : engine_(seed) {}
-  uint32_t pick(uint32_t n) { return uint32_t(engine_() % n); }
-  float unit() { return float(engine_() >> 8) * 0x1p-24f; }
-  vec3 point(float scale) {
-    const float x = unit(), y = unit(), z = unit();
-    return (vec3(x, y, z) * 2.0f - 1.0f) * scale;
-  }
-
- private:
-  std::mt19937 engine_;
-};
-
-void addTriangle(Scene& scene, vec3 a, vec3 b, vec3 c) {
-  const uint32_t first = uint32_t(scene.positions.size());
-  scene.positions.insert(scene.positions.end(), {a, b, c});
-  scene.triangles.push_back({first, first + 1, first + 2});
-}
-
-Scene soup(Random& random, int count, float size, float sliver) {
-  Scene scene;
-  for (int i = 0; i < count; ++i) {
-    const vec3 a = random.point(1), b = a + random.point(size);
-    addTriangle(scene, a, b, glm::mix(a, b, random.unit()) + random.point(size * sliver));
-  }
-  return scene;
-}
+using testing_support::addTriangle;
+using testing_support::Random;
+using testing_support::soup;
 
 /// A height field on a grid: shared vertices, and flat parts where whole boxes have no thickness.
 Scene terrain(Random& random, int side, bool flat) {
@@ -178,11 +152,6 @@ testing::AssertionResult sameHit(const char*, const char*, const Hit& actual, co
   if (same) return testing::AssertionSuccess();
   return testing::AssertionFailure() << fmt::format("triangle {} at {:a}, expected {} at {:a}",
                                                     actual.triangle, actual.t, expected.triangle, expected.t);
-}
-
-std::string describeRay(const Ray& ray) {
-  const vec4 o = ray.origin, d = ray.direction;
-  return fmt::format("from {:a} {:a} {:a} along {:a} {:a} {:a}", o.x, o.y, o.z, d.x, d.y, d.z);
 }
 
 }  // namespace sightline

@@ -8,8 +8,11 @@
 #include "bvh/bvh.h"
 #include "core/scene/scene.h"
 #include "core/shared/types.h"
+#include "tests/support/random_triangles.h"
 
 namespace sightline {
+
+using testing_support::describeRay;
 
 struct TraceCase {
   std::string name;
@@ -29,8 +32,5 @@ std::vector<Hit> bruteForce(const Scene& scene, const std::vector<Ray>& rays);
 
 /// Bits of t and id; t does not count for a miss.
 testing::AssertionResult sameHit(const char*, const char*, const Hit& actual, const Hit& expected);
-
-/// Hexadecimal, to paste into a test.
-std::string describeRay(const Ray& ray);
 
 }  // namespace sightline

@@ -72,13 +72,13 @@ TEST(Judge, FindsWhatBruteForceInRationalsFinds) {
       for (const Ray& ray : c.rays) {
         const ExactHit hit = judge.nearest(judgeRay(ray));
         const BruteHit expected = bruteNearest(c.scene, ray);
-        ASSERT_EQ(hit.triangles, expected.triangles) << c.name << ", ray " << judge_test::hexRay(ray);
+        ASSERT_EQ(hit.triangles, expected.triangles) << c.name << ", ray " << judge_test::describeRay(ray);
         hits += !hit.missed();
         ties += hit.triangles.size() > 1;
         misses += hit.missed();
         if (hit.missed()) continue;
-        ASSERT_LE(Rational(hit.t.low), expected.t) << c.name << ", ray " << judge_test::hexRay(ray);
-        ASSERT_GE(Rational(hit.t.high), expected.t) << c.name << ", ray " << judge_test::hexRay(ray);
+        ASSERT_LE(Rational(hit.t.low), expected.t) << c.name << ", ray " << judge_test::describeRay(ray);
+        ASSERT_GE(Rational(hit.t.high), expected.t) << c.name << ", ray " << judge_test::describeRay(ray);
       }
     }
   }
@@ -97,13 +97,13 @@ TEST(Judge, KnowsWhichTrianglesARayMeetsAndWhere) {
         const Rational expected =
             bruteContact(ray, c.scene.positions[v.x], c.scene.positions[v.y], c.scene.positions[v.z]);
         ASSERT_EQ(judge.meets(judgeRay(ray), id), expected != 0)
-            << c.name << ", triangle " << id << ", ray " << judge_test::hexRay(ray);
+            << c.name << ", triangle " << id << ", ray " << judge_test::describeRay(ray);
         if (expected == 0) continue;
         const auto t = judge.planeDistance(judgeRay(ray), id);
         ASSERT_TRUE(t.has_value());
         ASSERT_LE(Rational(t->low), expected);
         ASSERT_GE(Rational(t->high), expected);
-        ASSERT_LE(t->high - t->low, t->high * 0x1p-40) << c.name << ", ray " << judge_test::hexRay(ray);
+        ASSERT_LE(t->high - t->low, t->high * 0x1p-40) << c.name << ", ray " << judge_test::describeRay(ray);
       }
     }
   }
