@@ -4,11 +4,9 @@
 #include <pwd.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cstdlib>
 
+#include "core/device/select_device.h"
 #include "core/error.h"
 
 namespace sightline {
@@ -70,50 +68,9 @@ void keepCacheInUsersFolder() {
   }
 }
 
-std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-/// What there is, for the end of an error message.
-std::string inventory(const std::vector<OpenClDevice>& devices) {
-  if (devices.empty()) {
-    return "no OpenCL device found: install a driver (Debian: pocl-opencl-icd runs on any processor; it "
-           "needs a "
-           "cache folder that it can write: POCL_CACHE_DIR, else ~/.cache), or take --device cpu";
-  }
-  std::string text = "there is";
-  for (const OpenClDevice& device : devices) {
-    text += fmt::format("{} {} ({}{}{})", &device == &devices.front() ? "" : ",", device.info.id,
-                        device.info.name,
-                        device.info.unusable.empty() ? "" : "; unusable: ", device.info.unusable);
-  }
-  return text;
-}
-
 /// GPUs before CPUs before the rest.
 int rank(const OpenClDevice& device) {
   return device.type & CL_DEVICE_TYPE_GPU ? 0 : (device.type & CL_DEVICE_TYPE_CPU ? 1 : 2);
-}
-
-const OpenClDevice* match(const std::vector<OpenClDevice>& devices, const std::string& wanted) {
-  if (wanted.empty()) {
-    const OpenClDevice* best = nullptr;
-    for (const OpenClDevice& device : devices) {
-      if (device.info.unusable.empty() && (!best || rank(device) < rank(*best))) best = &device;
-    }
-    return best;
-  }
-  size_t index = 0;
-  const auto [end, failure] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
-  if (failure == std::errc() && end == wanted.data() + wanted.size()) {
-    return index < devices.size() ? &devices[index] : nullptr;
-  }
-  const auto found = std::find_if(devices.begin(), devices.end(), [&](const OpenClDevice& device) {
-    return lowerCase(device.info.name).find(lowerCase(wanted)) != std::string::npos;
-  });
-  return found == devices.end() ? nullptr : &*found;
 }
 
 }  // namespace
@@ -137,20 +94,10 @@ std::vector<OpenClDevice> findOpenClDevices() {
 }
 
 OpenClDevice selectOpenClDevice(const std::string& selector) {
-  const std::string prefix = "opencl";
-  const bool named = selector.size() > prefix.size() + 1 && selector[prefix.size()] == ':';
-  if (selector.compare(0, prefix.size(), prefix) != 0 || (selector != prefix && !named)) {
-    throw Error(fmt::format("device \"{}\": expected opencl, opencl:INDEX or opencl:PART-OF-NAME", selector),
-                kExitUsage);
-  }
-  const std::vector<OpenClDevice> devices = findOpenClDevices();
-  const OpenClDevice* device = match(devices, named ? selector.substr(prefix.size() + 1) : "");
-  if (!device) throw Error(fmt::format("device \"{}\": {}", selector, inventory(devices)));
-  if (!device->info.unusable.empty()) {
-    throw Error(fmt::format("device \"{}\" ({}) cannot be used: {}", selector, device->info.name,
-                            device->info.unusable));
-  }
-  return *device;
+  return selectDevice(
+      selector, "opencl", findOpenClDevices(), rank,
+      "no OpenCL device found: install a driver (Debian: pocl-opencl-icd runs on any processor; it "
+      "needs a cache folder that it can write: POCL_CACHE_DIR, else ~/.cache), or take --device cpu");
 }
 
 void requireOpenClDevice(const std::string& selector) {

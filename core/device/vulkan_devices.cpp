@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <utility>
 
+#include "core/device/select_device.h"
 #include "core/error.h"
 
 namespace sightline {
@@ -102,45 +100,6 @@ int rank(const VulkanDeviceChoice& device) {
   }
 }
 
-std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-const VulkanDeviceChoice* match(const std::vector<VulkanDeviceChoice>& devices, const std::string& wanted) {
-  if (wanted.empty()) {
-    const VulkanDeviceChoice* best = nullptr;
-    for (const VulkanDeviceChoice& device : devices) {
-      if (device.info.unusable.empty() && (!best || rank(device) < rank(*best))) best = &device;
-    }
-    return best;
-  }
-  size_t index = 0;
-  const auto [end, failure] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), index);
-  if (failure == std::errc() && end == wanted.data() + wanted.size()) {
-    return index < devices.size() ? &devices[index] : nullptr;
-  }
-  const auto found = std::find_if(devices.begin(), devices.end(), [&](const VulkanDeviceChoice& device) {
-    return lowerCase(device.info.name).find(lowerCase(wanted)) != std::string::npos;
-  });
-  return found == devices.end() ? nullptr : &*found;
-}
-
-/// What there is, for the end of an error message.
-std::string inventory(const std::vector<VulkanDeviceChoice>& devices) {
-  if (devices.empty()) {
-    return "no Vulkan device found: install a driver with ray tracing, or use the devices cpu or opencl";
-  }
-  std::string text = "there is";
-  for (const VulkanDeviceChoice& device : devices) {
-    text += fmt::format("{} {} ({}{}{})", &device == &devices.front() ? "" : ",", device.info.id,
-                        device.info.name,
-                        device.info.unusable.empty() ? "" : "; unusable: ", device.info.unusable);
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string whyUnusable(const VulkanAbilities& abilities) {
@@ -180,20 +139,9 @@ std::vector<VulkanDeviceChoice> findVulkanDevices(const VulkanInstance& instance
 }
 
 VulkanDeviceChoice selectVulkanDevice(const VulkanInstance& instance, const std::string& selector) {
-  const std::string prefix = "vulkan";
-  const bool named = selector.size() > prefix.size() + 1 && selector[prefix.size()] == ':';
-  if (!selector.starts_with(prefix) || (selector != prefix && !named)) {
-    throw Error(fmt::format("device \"{}\": expected vulkan, vulkan:INDEX or vulkan:PART-OF-NAME", selector),
-                kExitUsage);
-  }
-  const std::vector<VulkanDeviceChoice> devices = findVulkanDevices(instance);
-  const VulkanDeviceChoice* device = match(devices, named ? selector.substr(prefix.size() + 1) : "");
-  if (!device) throw Error(fmt::format("device \"{}\": {}", selector, inventory(devices)));
-  if (!device->info.unusable.empty()) {
-    throw Error(fmt::format("device \"{}\" ({}) cannot be used: {}", selector, device->info.name,
-                            device->info.unusable));
-  }
-  return *device;
+  return selectDevice(
+      selector, "vulkan", findVulkanDevices(instance), rank,
+      "no Vulkan device found: install a driver with ray tracing, or use the devices cpu or opencl");
 }
 
 std::vector<DeviceInfo> listVulkanDevices() {
