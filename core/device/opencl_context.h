@@ -74,6 +74,8 @@ class OpenClContext {
   const DeviceInfo& info() const { return info_; }
   bool isCpu() const { return is_cpu_; }
   uint64_t maxAllocationBytes() const { return max_allocation_; }
+  /// Whether a buffer of this size is within the limits.
+  bool fits(uint64_t bytes) const { return bytes <= max_allocation_ && *allocated_ + bytes <= memory_limit_; }
   uint32_t computeUnits() const { return compute_units_; }
   uint64_t allocatedBytes() const { return *allocated_; }
 

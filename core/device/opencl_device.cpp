@@ -165,10 +165,7 @@ class OpenClDevice final : public Device {
  private:
   bool wantsHash(const DeviceOptions& options) const {
     if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
-    const uint64_t budget =
-        options.memory_budget_bytes > 0 ? options.memory_budget_bytes : info().memory_bytes;
-    const uint64_t array = uint64_t(triangle_count_) * 4;
-    return array > context_.maxAllocationBytes() || context_.allocatedBytes() + array > budget;
+    return !context_.fits(uint64_t(triangle_count_) * 4);
   }
 
   /// id -> one of its records, for the corners of border triangles and occluders.

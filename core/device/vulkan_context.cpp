@@ -49,7 +49,7 @@ VulkanBuffer::~VulkanBuffer() {
   if (total_) *total_ -= bytes_;
 }
 
-VulkanContext::VulkanContext(const std::string& selector, bool ray_queries)
+VulkanContext::VulkanContext(const std::string& selector, bool ray_queries, uint64_t memory_budget)
     : api_(instance_.api()), choice_(selectVulkanDevice(instance_, selector)) {
   const VulkanAbilities& abilities = choice_.abilities;
   uses_pipelines_ = abilities.pipelines && !ray_queries;
@@ -61,6 +61,7 @@ VulkanContext::VulkanContext(const std::string& selector, bool ray_queries)
   families_ = chooseFamilies(api_, choice_.physical);
   api_.vkGetPhysicalDeviceMemoryProperties(choice_.physical, &memory_);
   readLimits();
+  memory_limit_ = memory_budget > 0 ? std::min(memory_budget, info().memory_bytes) : info().memory_bytes;
   createDevice();
 }
 
@@ -196,15 +197,14 @@ VulkanBuffer VulkanContext::buffer(uint64_t bytes, const char* what, VulkanMemor
   allocate.memoryTypeIndex = memoryType(requirements.memoryTypeBits, memory);
   // Drivers on the processor promise more memory than there is.
   VkDeviceMemory block = VK_NULL_HANDLE;
-  const bool fits = *allocated_ + bytes <= this->info().memory_bytes;
-  const VkResult code =
-      fits ? api_.vkAllocateMemory(device_, &allocate, nullptr, &block) : VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  const VkResult code = fits(bytes) ? api_.vkAllocateMemory(device_, &allocate, nullptr, &block)
+                                    : VK_ERROR_OUT_OF_DEVICE_MEMORY;
   if (code == VK_ERROR_OUT_OF_DEVICE_MEMORY || code == VK_ERROR_OUT_OF_HOST_MEMORY) {
     throw Error(
-        fmt::format("{} ({}): the {} take {:.0f} MiB, but {:.0f} of the device's {:.0f} MiB are in "
+        fmt::format("{} ({}): the {} take {:.1f} MiB, but {:.1f} of the {:.1f} MiB that it may use are in "
                     "use{}",
                     this->info().id, this->info().name, what, mebibytes(bytes), mebibytes(*allocated_),
-                    mebibytes(this->info().memory_bytes), advice));
+                    mebibytes(memory_limit_), advice));
   }
   checkVk(code, "vkAllocateMemory");
   result.memory_ = {*this, block, [](const VulkanContext& context, VkDeviceMemory freed) {

@@ -84,7 +84,8 @@ struct VulkanLimits {
 class VulkanContext {
  public:
   /// selector: as of selectVulkanDevice. ray_queries: use them even where there are ray tracing pipelines.
-  VulkanContext(const std::string& selector, bool ray_queries);
+  /// memory_budget: bytes that all buffers may take; 0: what the device has.
+  VulkanContext(const std::string& selector, bool ray_queries, uint64_t memory_budget = 0);
   VulkanContext(const VulkanContext&) = delete;
   VulkanContext& operator=(const VulkanContext&) = delete;
   ~VulkanContext();
@@ -95,6 +96,10 @@ class VulkanContext {
   const VulkanLimits& limits() const { return limits_; }
   bool usesPipelines() const { return uses_pipelines_; }
   uint64_t allocatedBytes() const { return *allocated_; }
+  /// Whether a buffer of this size is within the limits.
+  bool fits(uint64_t bytes) const {
+    return bytes <= limits_.allocation_bytes && *allocated_ + bytes <= memory_limit_;
+  }
 
   VkQueue queue() const { return queue_; }
   uint32_t queueFamily() const { return families_.front(); }
@@ -116,6 +121,7 @@ class VulkanContext {
   bool uses_pipelines_;
   VkPhysicalDeviceMemoryProperties memory_{};
   VulkanLimits limits_;
+  uint64_t memory_limit_ = 0;       ///< bytes that all buffers may take
   std::vector<uint32_t> families_;  ///< one or two: of queue and transfer queue
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE, transfer_queue_ = VK_NULL_HANDLE;

@@ -21,7 +21,7 @@ constexpr uint32_t kGroup = 64;
 class VulkanDevice final : public Device {
  public:
   VulkanDevice(const std::string& selector, const Scene& scene, const Bvh& bvh, const DeviceOptions& options)
-      : context_(selector, options.ray_queries),
+      : context_(selector, options.ray_queries, options.memory_budget_bytes),
         runner_(context_),
         launch_(runner_.launch),
         group_(options.work_group_size > 0 ? options.work_group_size : kGroup),
@@ -163,10 +163,7 @@ class VulkanDevice final : public Device {
  private:
   bool wantsHash(const DeviceOptions& options) const {
     if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
-    const uint64_t budget =
-        options.memory_budget_bytes > 0 ? options.memory_budget_bytes : context_.info().memory_bytes;
-    const uint64_t array = uint64_t(triangle_count_) * 4;
-    return array > context_.limits().allocation_bytes || context_.allocatedBytes() + array > budget;
+    return !context_.fits(uint64_t(triangle_count_) * 4);
   }
 
   /// The stage, made when it is first needed: drivers take up to a second to compile one.
