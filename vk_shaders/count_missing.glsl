@@ -4,10 +4,9 @@
 #include "vk_shaders/trace.glsl"
 
 void runItem(uint slot) {
-  RandomSegment segment = SL_LAUNCH.segment;
-  uint offset = slotOffset(segment, slot);
-  if (offset == kNoTriangle) return;
-  Ray ray = offsetRay(segment, Faces(SL_LAUNCH.faces).at[segment.range.x], SL_LAUNCH.shifts, offset);
+  uint offset;
+  Ray ray;
+  if (!slotRayAt(slot, offset, ray)) return;
   uint triangle = triangleOf(nearestHit(ray));
   if (triangle != kNoTriangle && !isInSet(kTheSet, triangle)) {
     atomicAdd(Words(SL_LAUNCH.counters).at[kMissingCounter], 1u);

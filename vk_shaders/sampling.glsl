@@ -75,6 +75,16 @@ Ray reverseRayAt(uint index) {
   return reverseRay(item, Faces(SL_LAUNCH.faces).at[reverseFace(item, k)], k, params);
 }
 
+/// The random ray that a slot of the launch's segment traces, and its offset there. false: the slot has none.
+bool slotRayAt(uint slot, out uint offset, out Ray ray) {
+  RandomSegment segment = SL_LAUNCH.segment;
+  offset = slotOffset(segment, slot);
+  ray = noRay();
+  if (offset == kNoTriangle) return false;
+  ray = offsetRay(segment, Faces(SL_LAUNCH.faces).at[segment.range.x], SL_LAUNCH.shifts, offset);
+  return true;
+}
+
 /// The random ray with this index (1 ..) in the batch.
 Ray segmentRayAt(uint index) {
   for (uint s = 0u; s < SL_LAUNCH.segment_count; ++s) {
