@@ -42,7 +42,7 @@ void requireDevice(const std::string& name) {
   if (isOfKind(name, "opencl")) {
     requireOpenClDevice(name);
   } else if (isOfKind(name, "vulkan")) {
-    selectVulkanDevice(VulkanInstance(), name);
+    selectVulkanDevice(name);
   } else if (name != "cpu") {
     throwUnknown(name);
   }

@@ -50,7 +50,7 @@ VulkanBuffer::~VulkanBuffer() {
 }
 
 VulkanContext::VulkanContext(const std::string& selector, bool ray_queries, uint64_t memory_budget)
-    : api_(instance_.api()), choice_(selectVulkanDevice(instance_, selector)) {
+    : api_(VulkanInstance::get().api()), choice_(selectVulkanDevice(selector)) {
   const VulkanAbilities& abilities = choice_.abilities;
   uses_pipelines_ = abilities.pipelines && !ray_queries;
   if (ray_queries && !abilities.ray_queries) {

@@ -115,7 +115,6 @@ class VulkanContext {
   void readLimits();
   uint32_t memoryType(uint32_t allowed, VulkanMemory memory) const;
 
-  VulkanInstance instance_;
   VulkanApi api_;
   VulkanDeviceChoice choice_;
   bool uses_pipelines_;

@@ -126,29 +126,29 @@ std::string vulkanLayout(bool pipelines) {
   return pipelines ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
 }
 
-std::vector<VulkanDeviceChoice> findVulkanDevices(const VulkanInstance& instance) {
+std::vector<VulkanDeviceChoice> findVulkanDevices() {
+  const VulkanInstance& instance = VulkanInstance::get();
   const VulkanApi& api = instance.api();
   uint32_t count = 0;
-  checkVk(api.vkEnumeratePhysicalDevices(instance.get(), &count, nullptr), "vkEnumeratePhysicalDevices");
+  checkVk(api.vkEnumeratePhysicalDevices(instance.handle(), &count, nullptr), "vkEnumeratePhysicalDevices");
   std::vector<VkPhysicalDevice> handles(count);
-  checkVk(api.vkEnumeratePhysicalDevices(instance.get(), &count, handles.data()),
+  checkVk(api.vkEnumeratePhysicalDevices(instance.handle(), &count, handles.data()),
           "vkEnumeratePhysicalDevices");
   std::vector<VulkanDeviceChoice> devices;
   for (VkPhysicalDevice handle : handles) devices.push_back(describe(api, handle, devices.size()));
   return devices;
 }
 
-VulkanDeviceChoice selectVulkanDevice(const VulkanInstance& instance, const std::string& selector) {
+VulkanDeviceChoice selectVulkanDevice(const std::string& selector) {
   return selectDevice(
-      selector, "vulkan", findVulkanDevices(instance), rank,
+      selector, "vulkan", findVulkanDevices(), rank,
       "no Vulkan device found: install a driver with ray tracing, or use the devices cpu or opencl");
 }
 
 std::vector<DeviceInfo> listVulkanDevices() {
   std::vector<DeviceInfo> list;
   try {
-    const VulkanInstance instance;
-    for (VulkanDeviceChoice& device : findVulkanDevices(instance)) list.push_back(std::move(device.info));
+    for (VulkanDeviceChoice& device : findVulkanDevices()) list.push_back(std::move(device.info));
   } catch (const Error& error) {
     DeviceInfo none;
     none.id = "vulkan";

@@ -27,7 +27,7 @@ std::string whyUnusable(const VulkanAbilities& abilities);
 /// DeviceInfo::layout.
 std::string vulkanLayout(bool pipelines);
 
-/// A physical device of an instance.
+/// A physical device.
 struct VulkanDeviceChoice {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkPhysicalDeviceType type = VK_PHYSICAL_DEVICE_TYPE_OTHER;
@@ -35,13 +35,14 @@ struct VulkanDeviceChoice {
   DeviceInfo info;
 };
 
-/// Every physical device, in the order of its index in "vulkan:INDEX"; unusable ones with the reason.
-std::vector<VulkanDeviceChoice> findVulkanDevices(const VulkanInstance& instance);
+/// Every physical device of the process's instance, in the order of its index in "vulkan:INDEX"; unusable
+/// ones with the reason. Throws Error as VulkanInstance::get does.
+std::vector<VulkanDeviceChoice> findVulkanDevices();
 
 /// selector: "vulkan" (a discrete GPU if there is a usable one, else an integrated one, else whatever),
 /// "vulkan:INDEX" or "vulkan:PART-OF-NAME" (any case, the first that matches). Throws Error that lists what
 /// there is.
-VulkanDeviceChoice selectVulkanDevice(const VulkanInstance& instance, const std::string& selector);
+VulkanDeviceChoice selectVulkanDevice(const std::string& selector);
 
 /// For `sightline devices`: empty where there is no Vulkan loader or no driver. Never throws.
 std::vector<DeviceInfo> listVulkanDevices();

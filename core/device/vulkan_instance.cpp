@@ -95,13 +95,9 @@ VulkanInstance::VulkanInstance() {
   }
 }
 
-VulkanInstance::~VulkanInstance() {
-  if (messenger_) {
-    const auto destroy = reinterpret_cast<PFN_vkDestroyDebugUtilsMessengerEXT>(
-        api_.vkGetInstanceProcAddr(instance_, "vkDestroyDebugUtilsMessengerEXT"));
-    if (destroy) destroy(instance_, messenger_, nullptr);
-  }
-  api_.vkDestroyInstance(instance_, nullptr);
+const VulkanInstance& VulkanInstance::get() {
+  static const VulkanInstance& instance = *new VulkanInstance;
+  return instance;
 }
 
 }  // namespace sightline

@@ -344,17 +344,29 @@ TEST(BakeCommand, AFullDiskIsAnErrorAndKeepsNothingFalse) {
 
 TEST(BakeCommand, WithoutOpenClItSaysHowAndDoesNotFallBack) {
   const Workplace place(1);
-  ASSERT_EQ(::setenv("OCL_ICD_VENDORS", "/nonexistent", 1), 0);
+  const std::string none = "OCL_ICD_VENDORS=/nonexistent";
   const ProgramRun bake = runProgram(
-      fmt::format("bake {} --cells {} -o {}", place / "blocks.obj", place / "cells.json", place / "x.pvs"));
-  const ProgramRun devices = runProgram("devices");
-  ::unsetenv("OCL_ICD_VENDORS");
+      fmt::format("bake {} --cells {} -o {}", place / "blocks.obj", place / "cells.json", place / "x.pvs"),
+      none);
+  const ProgramRun devices = runProgram("devices", none);
   EXPECT_EQ(bake.exit_code, 1) << bake.output;
   EXPECT_TRUE(contains(bake, "pocl-opencl-icd")) << bake.output;
   EXPECT_TRUE(contains(bake, "--device cpu")) << bake.output;
   EXPECT_FALSE(std::filesystem::exists(place / "x.pvs.part"));
   EXPECT_EQ(devices.exit_code, 0);
   EXPECT_TRUE(contains(devices, "none found")) << devices.output;
+}
+
+TEST(BakeCommand, WithoutAVulkanDriverItSaysHowAndDoesNotFallBack) {
+  const Workplace place(1);
+  const std::string none = "VK_DRIVER_FILES=/nonexistent.json VK_ICD_FILENAMES=/nonexistent.json";
+  const ProgramRun bake = runProgram(place.bake("x.pvs", "", "vulkan"), none);
+  const ProgramRun devices = runProgram("devices", none);
+  EXPECT_EQ(bake.exit_code, 1) << bake.output;
+  EXPECT_TRUE(contains(bake, "no Vulkan driver: install")) << bake.output;
+  EXPECT_FALSE(std::filesystem::exists(place / "x.pvs.part"));
+  EXPECT_EQ(devices.exit_code, 0);
+  EXPECT_TRUE(contains(devices, "no Vulkan driver: install")) << devices.output;
 }
 
 TEST(BakeCommand, ADeviceThatIsNotThereIsFoundBeforeTheTreeIsBuilt) {

@@ -14,9 +14,9 @@ struct ProgramRun {
   int exit_code = -1;
 };
 
-/// Runs sightline with the arguments, as a shell reads them.
-inline ProgramRun runProgram(const std::string& arguments) {
-  FILE* pipe = popen(("'" SL_PROGRAM "' " + arguments + " 2>&1 </dev/null").c_str(), "r");
+/// Runs sightline with the arguments, as a shell reads them. environment: settings for it, "NAME=VALUE ...".
+inline ProgramRun runProgram(const std::string& arguments, const std::string& environment = "") {
+  FILE* pipe = popen((environment + " '" SL_PROGRAM "' " + arguments + " 2>&1 </dev/null").c_str(), "r");
   if (pipe == nullptr) throw std::runtime_error("popen failed");
   ProgramRun run;
   std::array<char, 4096> buffer;
