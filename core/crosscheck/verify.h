@@ -44,7 +44,7 @@ struct CellProofs {
 struct VerifyOptions {
   RoundingLimit rounding;
   /// Places of the cell that are tried for a better witness, at most.
-  uint32_t tries = 400;
+  uint32_t tries = 5000;
 };
 
 /// Judges every witness of a cell, and puts better ones in their place where there are (their stage stays).
