@@ -41,8 +41,8 @@ SL_STRUCT(VulkanLaunch) {
   uint64 border_hits;      ///< uint[] a border ray: leaf that it hit, or kNoTriangle
   uint64 bits;             ///< a bit a border ray: it met a discontinuity
   uint64 discontinuities;  ///< uint[]: indices of border rays
-  uint64 rays;             ///< Ray[] that trace_rays reads, stage_rays writes
-  uint64 hits;             ///< Hit[] that trace_rays and trace_slots write
+  uint64 rays;             ///< Ray[] that trace_rays reads, stage_rays writes; ViewFrame[] of trace_views
+  uint64 hits;             ///< Hit[] that trace_rays and trace_slots write; uint[] of trace_views: triangles
   // Lists from bits.
   uint64 words;         ///< uint[]: bits to list
   uint64 block_counts;  ///< uint[]: bits in each block of kBlockWords words, then where its indices start
@@ -59,7 +59,7 @@ SL_STRUCT(VulkanLaunch) {
   uint list_end;  ///< entries in the list
   uint word_count;
   uint block_count;
-  uint reserved;
+  uint resolution;  ///< of the images of trace_views
 };
 
 SL_NAMESPACE_END

@@ -194,6 +194,31 @@ class CpuDevice final : public Device {
     });
   }
 
+  void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
+                  std::span<uint32_t> triangles) override {
+    const uint32_t view_packets = viewItems(resolution) / kPacket;
+    const size_t view_pixels = size_t(resolution) * resolution;
+    parallel(views.size() * view_packets, [&](size_t begin, size_t end) {
+      Ray rays[kPacket];
+      Hit hits[kPacket];
+      uint32_t pixels[kPacket];
+      for (size_t packet = begin; packet < end; ++packet) {
+        const size_t view = packet / view_packets;
+        const auto first = static_cast<uint32_t>(packet % view_packets) * kPacket;
+        for (uint32_t lane = 0; lane < kPacket; ++lane) {
+          const uint32_t pixel = pixels[lane] = viewPixel(first + lane, resolution);
+          rays[lane] = pixel == kNoTriangle
+                           ? noRay()
+                           : viewRay(views[view], pixel % resolution, pixel / resolution, resolution);
+        }
+        tracer_.tracePacket(rays, hits, kPacket);
+        for (uint32_t lane = 0; lane < kPacket; ++lane) {
+          if (pixels[lane] != kNoTriangle) triangles[view * view_pixels + pixels[lane]] = hits[lane].triangle;
+        }
+      }
+    });
+  }
+
  private:
   /// Tree and triangles.
   uint64_t residentBytes() const {

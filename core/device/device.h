@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -9,6 +10,7 @@
 #include "core/scene/scene.h"
 #include "core/shared/stage_params.h"
 #include "core/shared/types.h"
+#include "core/shared/view_ray.h"
 
 namespace sightline {
 
@@ -89,7 +91,22 @@ class Device {
 
   /// Nearest hits of any rays: pictures, tests, cross-checks. hits.size() == rays.size().
   virtual void traceRays(std::span<const Ray> rays, std::span<Hit> hits) = 0;
+
+  /// Square images of triangle ids (kNoTriangle where a pixel shows nothing): view after view, row after row
+  /// from the top. resolution: 1 .. kMaxViewResolution pixels a side;
+  /// triangles.size() == views.size() * resolution^2. Rays are made on the device, so many views a call are
+  /// the fastest way to see much.
+  virtual void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
+                          std::span<uint32_t> triangles) = 0;
 };
+
+inline constexpr uint32_t kMaxViewResolution = 16384;
+
+/// Views of one launch of traceViews: as many as make up so many pixels, which bounds the buffers.
+inline size_t viewsALaunch(uint32_t resolution) {
+  constexpr uint64_t kPixels = 1u << 24;
+  return std::max<uint64_t>(1, kPixels / (uint64_t(resolution) * resolution));
+}
 
 /// Devices that this machine has, the unusable ones with their reason.
 std::vector<DeviceInfo> listDevices();

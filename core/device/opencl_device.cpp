@@ -45,11 +45,11 @@ class OpenClDevice final : public Device {
     scene_ = uploadScene(context_, scene, bvh);
     uploadRecordIndex(bvh);
     set_ = std::make_unique<OpenClSet>(context_, triangle_count_, wantsHash(options));
-    const char* names[] = {"traceRandom",     "countMissing", "traceBorder",    "traceReverse",
-                           "countBits",       "sumBlocks",    "writeIndices",   "appendEntries",
-                           "insertContained", "copyEntries",  "traceRaysKernel"};
-    ClKernel* kernels[] = {&random_, &missing_, &border_,    &reverse_, &count_,      &sum_,
-                           &write_,  &append_,  &contained_, &copy_,    &rays_kernel_};
+    const char* names[] = {"traceRandom",     "countMissing", "traceBorder",     "traceReverse",
+                           "countBits",       "sumBlocks",    "writeIndices",    "appendEntries",
+                           "insertContained", "copyEntries",  "traceRaysKernel", "traceViewsKernel"};
+    ClKernel* kernels[] = {&random_, &missing_, &border_,    &reverse_, &count_,       &sum_,
+                           &write_,  &append_,  &contained_, &copy_,    &rays_kernel_, &views_kernel_};
     for (size_t i = 0; i < std::size(names); ++i) *kernels[i] = context_.kernel(names[i]);
     faces_ = context_.buffer(6 * sizeof(Face), "faces of the view cell");
     counters_ = context_.buffer((kCounters + 1) * 4, "counters");
@@ -162,6 +162,21 @@ class OpenClDevice final : public Device {
     }
   }
 
+  void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
+                  std::span<uint32_t> triangles) override {
+    const size_t most = viewsALaunch(resolution), view_pixels = size_t(resolution) * resolution;
+    for (size_t first = 0; first < views.size(); first += most) {
+      const size_t count = std::min(most, views.size() - first), pixels = count * view_pixels;
+      views_.reserve(context_, count * sizeof(ViewFrame), "views");
+      view_triangles_.reserve(context_, pixels * 4, "images of triangle ids");
+      context_.write(views_.buffer, &views[first], count * sizeof(ViewFrame));
+      const auto items = static_cast<uint32_t>(count) * viewItems(resolution);
+      context_.launch(views_kernel_, (items + lanes_ - 1) / lanes_, local_, scene_.nodes, scene_.triangles,
+                      scene_.reach, views_.buffer, resolution, items, view_triangles_.buffer);
+      context_.read(view_triangles_.buffer, &triangles[first * view_pixels], pixels * 4);
+    }
+  }
+
  private:
   bool wantsHash(const DeviceOptions& options) const {
     if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
@@ -244,11 +259,11 @@ class OpenClDevice final : public Device {
   OpenClScene scene_;
   ClBuffer record_of_, faces_, counters_, entries_;
   ClKernel random_, missing_, border_, reverse_, count_, sum_, write_, append_, contained_, copy_,
-      rays_kernel_;
+      rays_kernel_, views_kernel_;
   std::unique_ptr<OpenClSet> set_;
   StageParams params_{};
   std::vector<RandomSegment> segments_;  ///< of the batch
-  Scratch segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_;
+  Scratch segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_, views_, view_triangles_;
   uint32_t entry_capacity_ = 0;
   uint32_t size_ = 0;             ///< entries of the list
   uint32_t border_first_ = 0;     ///< entry of the first border ray

@@ -100,7 +100,7 @@ class VulkanDevice final : public Device {
       writeIndices(found, new_ids_, launch_.indices, "list of new triangles");
       reserveEntries(size_ + found);
       reserve(segment_buffer_, launch_.segments, segments_.size() * sizeof(RandomSegment), "random segments");
-      writeSegments();
+      updateInPieces(segment_buffer_, segments_.data(), segments_.size());
       launch_.segment_count = static_cast<uint32_t>(segments_.size());
       launch_.stage = stage;
       launch_.list_end = size_;
@@ -160,6 +160,26 @@ class VulkanDevice final : public Device {
     }
   }
 
+  void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
+                  std::span<uint32_t> triangles) override {
+    const size_t most = viewsALaunch(resolution), view_pixels = size_t(resolution) * resolution;
+    launch_.resolution = resolution;
+    for (size_t first = 0; first < views.size(); first += most) {
+      const size_t count = std::min(most, views.size() - first), bytes = count * view_pixels * 4;
+      reserve(views_, launch_.rays, count * sizeof(ViewFrame), "views");
+      reserve(view_triangles_, launch_.hits, bytes, "images of triangle ids");
+      if (view_readback_.bytes() < bytes) {
+        view_readback_ = VulkanBuffer();
+        view_readback_ = context_.buffer(bytes, "staging memory", VulkanMemory::kReadback);
+      }
+      updateInPieces(views_, &views[first], count);
+      runner_.run(tracing(views_stage_, "trace_views"), static_cast<uint32_t>(count) * viewItems(resolution));
+      runner_.commands.copy(view_triangles_, view_readback_, bytes);
+      runner_.takeCounts();
+      std::memcpy(&triangles[first * view_pixels], view_readback_.mapped(), bytes);
+    }
+  }
+
  private:
   bool wantsHash(const DeviceOptions& options) const {
     if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
@@ -214,12 +234,12 @@ class VulkanDevice final : public Device {
     runner_.run(write_, launch_.block_count);
   }
 
-  void writeSegments() {
-    constexpr size_t kPiece = 65536 / sizeof(RandomSegment);
-    for (size_t first = 0; first < segments_.size(); first += kPiece) {
-      const size_t count = std::min(kPiece, segments_.size() - first);
-      runner_.commands.update(segment_buffer_, &segments_[first], count * sizeof(RandomSegment),
-                              first * sizeof(RandomSegment));
+  template <typename T>
+  void updateInPieces(const VulkanBuffer& buffer, const T* data, size_t count) {
+    constexpr size_t kPiece = 65536 / sizeof(T);
+    for (size_t first = 0; first < count; first += kPiece) {
+      const size_t some = std::min(kPiece, count - first);
+      runner_.commands.update(buffer, &data[first], some * sizeof(T), first * sizeof(T));
     }
   }
 
@@ -252,9 +272,9 @@ class VulkanDevice final : public Device {
   VulkanScene scene_;
   VulkanSet set_;
   VulkanBuffer faces_, entries_, segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_,
-      border_edges_, reverse_items_;
+      border_edges_, reverse_items_, views_, view_triangles_, view_readback_;
   VulkanStage count_, sum_, write_, edges_, reverse_list_, append_, contained_;
-  std::optional<VulkanStage> random_, missing_, border_, reverse_, rays_stage_;
+  std::optional<VulkanStage> random_, missing_, border_, reverse_, rays_stage_, views_stage_;
   std::vector<RandomSegment> segments_;  ///< of the batch
   uint32_t entry_capacity_ = 0;
   uint32_t size_ = 0;             ///< entries of the list

@@ -45,6 +45,10 @@ class WrongDevice final : public Device {
     device_->traceRays(rays, hits);
     for (size_t i = 0; i < rays.size(); ++i) changed_ += change_(rays[i], hits[i]);
   }
+  void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
+                  std::span<uint32_t> triangles) override {
+    device_->traceViews(views, resolution, triangles);
+  }
 
   void loseFromSet(std::function<bool(uint32_t)> lost) { lost_ = std::move(lost); }
 

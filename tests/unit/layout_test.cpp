@@ -2,6 +2,7 @@
 
 #include "cl_kernels/program_source.h"
 #include "core/shared/stage_params.h"
+#include "core/shared/view_ray.h"
 
 namespace sightline {
 namespace {
@@ -13,6 +14,7 @@ TEST(Layout, StructsInBuffersHaveTheSizesOfAllThreeLanguages) {
   EXPECT_EQ(sizeof(PvsEntry), 32u);
   EXPECT_EQ(sizeof(StageParams), 48u);
   EXPECT_EQ(sizeof(RandomSegment), 64u);
+  EXPECT_EQ(sizeof(ViewFrame), 64u);
 }
 
 }  // namespace
