@@ -11,16 +11,16 @@ readonly build="$root/build"
 # what only the tests and bench_trace use.
 readonly packages=(
   cmake g++ ninja-build pkg-config
-  libcgal-dev libcli11-dev libfmt-dev libglm-dev libmeshoptimizer-dev libpng-dev libtbb-dev
+  libcgal-dev libcli11-dev libfmt-dev libglm-dev libjs-chart.js libmeshoptimizer-dev libpng-dev libtbb-dev
   libtinyobjloader-dev libxxhash-dev libzstd-dev nlohmann-json3-dev
   ocl-icd-opencl-dev opencl-clhpp-headers opencl-headers pocl-opencl-icd
   glslang-tools libvulkan-dev
   libembree-dev libgtest-dev spirv-tools
 )
 
-# Only the tests need these: Vulkan's validation layer, and a Vulkan driver that traces rays on any processor.
-# Debian 12's own Mesa has none yet, so it comes from bookworm-backports.
-readonly test_packages=(vulkan-validationlayers mesa-vulkan-drivers)
+# Only the tests need these: Vulkan's validation layer, a Vulkan driver that traces rays on any processor (Debian 12's
+# own Mesa has none yet, so it comes from bookworm-backports), and a browser to open reports in.
+readonly test_packages=(vulkan-validationlayers mesa-vulkan-drivers chromium)
 readonly mesa_version=25
 
 usage() {
@@ -228,7 +228,7 @@ main() {
     test)
       installPackages "${packages[@]}" "${test_packages[@]}"
       prepareCaches
-      export SIGHTLINE_REQUIRE_VULKAN=1  # there is a driver now: tests that find none fail
+      export SIGHTLINE_REQUIRE_VULKAN=1 SIGHTLINE_REQUIRE_CHROMIUM=1  # they are there now: tests that find none fail
       buildTarget all
       runTests "$@"
       ;;

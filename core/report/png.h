@@ -24,6 +24,9 @@ struct Image {
   const Rgb& at(uint32_t x, uint32_t y) const { return pixels[size_t(y) * width + x]; }
 };
 
+/// The bytes of an 8-bit RGB PNG file. The image has at least one pixel. Throws Error (what failed).
+std::vector<uint8_t> encodePng(const Image& image);
+
 /// Writes an 8-bit RGB PNG, to a temporary name beside it and renamed. The image has at least one pixel.
 /// Throws Error (file, what failed).
 void savePng(const Image& image, const std::filesystem::path& file);

@@ -39,4 +39,18 @@ std::optional<std::vector<uint8_t>> decodeBase64(std::string_view text) {
   return bytes;
 }
 
+std::string encodeBase64(std::span<const uint8_t> bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](size_t k) { return i + k < bytes.size() ? uint32_t(bytes[i + k]) : 0u; };
+    const uint32_t bits = byte(0) << 16 | byte(1) << 8 | byte(2);
+    for (uint32_t k = 0; k < 4; ++k) {
+      text += i + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
+    }
+  }
+  return text;
+}
+
 }  // namespace sightline

@@ -1,0 +1,156 @@
+// HTML reports in a real browser: what a reader of a phone, a desktop and paper gets.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/output/example_pvs.h"
+#include "tests/support/chromium.h"
+#include "tests/support/example_page.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+using testing_support::examplePage;
+using testing_support::kHostileName;
+using testing_support::runChromium;
+
+/// Goes before everything else in the page: keeps what goes wrong.
+constexpr const char* kWatch = R"(<script>
+window.wrong = [];
+addEventListener('error', (e) => wrong.push('error: ' + (e.message || e.target.tagName)), true);
+addEventListener('unhandledrejection', (e) => wrong.push('rejection: ' + e.reason));
+addEventListener('securitypolicyviolation', (e) => wrong.push('fetches ' + e.blockedURI));
+for (const kind of ['error', 'warn']) console[kind] = (...words) => wrong.push(kind + ': ' + words.join(' '));
+</script>)";
+
+/// Goes to the end: measures, and leaves the answer in the document.
+constexpr const char* kMeasure = R"(<script>
+addEventListener('load', () => setTimeout(() => {
+  const colors = (canvas) => {
+    const pixels = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data, seen = new Set();
+    for (let i = 0; i < pixels.length; i += 4) {
+      if (pixels[i + 3] > 200) seen.add(pixels[i] << 16 | pixels[i + 1] << 8 | pixels[i + 2]);
+    }
+    return seen.size;
+  };
+  const root = document.scrollingElement;
+  const answer = {
+    wrong, broken: window.broken || 0, width: innerWidth, scroll_width: root.scrollWidth,
+    title: document.title,
+    colors: Array.from(document.querySelectorAll('.plot canvas'), colors),
+    legends: Array.from(document.querySelectorAll('.legend'), (box) => box.children.length),
+    plot_widths: Array.from(document.querySelectorAll('.plot canvas'), (c) => c.getBoundingClientRect().width),
+    pictures: Array.from(document.querySelectorAll('.pictures img'), (i) => i.naturalWidth),
+    fetched: performance.getEntriesByType('resource').map((e) => e.name).filter((n) => !n.startsWith('data:')),
+    hostile: document.querySelector('tbody tr:last-child th').textContent,
+    unlabelled: Array.from(document.querySelectorAll('img:not([alt]), canvas:not([aria-label]):not([aria-hidden])'))
+        .length,
+  };
+  const pre = document.createElement('pre');
+  pre.id = 'answer';
+  pre.textContent = JSON.stringify(answer);
+  parent === window ? document.body.append(pre) : parent.document.body.append(pre);
+}, 100));
+</script>)";
+
+class HtmlInBrowser : public ::testing::Test {
+ protected:
+  void SetUp() override { SL_SKIP_WITHOUT_CHROMIUM(); }
+
+  std::string write(const std::string& name, const std::string& html) {
+    std::ofstream(folder_ / name) << html;
+    return "'file://" + (folder_ / name).string() + "'";
+  }
+
+  /// The page with the two scripts.
+  static std::string watched(std::string html) {
+    html.insert(html.find("<title>"), kWatch);
+    html.insert(html.rfind("</body>"), kMeasure);
+    return html;
+  }
+
+  /// Opens the page in a window as wide, and returns what kMeasure found.
+  json measure(const std::string& html, int width) {
+    // A frame is as narrow as one likes; a window is not.
+    write("page.html", watched(html));
+    const std::string frame = write(
+        "frame.html", "<!DOCTYPE html><body style='margin:0'><iframe src='page.html' style='border:0;width:" +
+                          std::to_string(width) + "px;height:900px'></iframe></body>");
+    const auto run =
+        runChromium(folder_ / "profile",
+                    "--allow-file-access-from-files --window-size=1600,1000 --virtual-time-budget=5000 "
+                    "--dump-dom " +
+                        frame);
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    const std::string begin = "<pre id=\"answer\">";
+    const size_t at = run.output.find(begin);
+    if (at == std::string::npos) {
+      ADD_FAILURE() << "no answer in " << run.output.substr(0, 2000);
+      return {};
+    }
+    std::string text =
+        run.output.substr(at + begin.size(), run.output.find("</pre>", at) - at - begin.size());
+    for (const auto& [entity, character] : {std::pair{"&lt;", "<"}, {"&gt;", ">"}, {"&amp;", "&"}}) {
+      for (size_t i = 0; (i = text.find(entity, i)) != std::string::npos; ++i) {
+        text.replace(i, std::string(entity).size(), character);
+      }
+    }
+    return json::parse(text);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(HtmlInBrowser, DrawsItsChartsAndFetchesNothing) {
+  const json page = measure(examplePage().html(), 1280);
+  EXPECT_EQ(page["wrong"], json::array());
+  EXPECT_EQ(page["fetched"], json::array());
+  EXPECT_EQ(page["broken"], 0);
+  EXPECT_EQ(page["title"], "Bake of " + kHostileName);
+  EXPECT_EQ(page["hostile"], kHostileName);
+  EXPECT_EQ(page["unlabelled"], 0);
+  EXPECT_EQ(page["pictures"], (json{320, 320}));
+  EXPECT_EQ(page["legends"], (json{5, 10}));
+  ASSERT_EQ(page["colors"].size(), 2u);
+  EXPECT_GE(page["colors"][0], 6) << "ink, lines of five colours";
+  EXPECT_GE(page["colors"][1], 11);
+  EXPECT_LE(page["scroll_width"], page["width"]);
+}
+
+TEST_F(HtmlInBrowser, FitsAPhone) {
+  const json page = measure(examplePage().html(), 390);
+  EXPECT_EQ(page["width"], 390);
+  EXPECT_EQ(page["scroll_width"], 390);
+  for (const json& width : page["plot_widths"]) EXPECT_TRUE(width > 300 && width < 390) << width;
+  EXPECT_EQ(page["wrong"], json::array());
+}
+
+TEST_F(HtmlInBrowser, TheWatchWorks) {
+  HtmlReport page("x");
+  page.table({.columns = {"a"}, .rows = {{"b"}}});
+  std::string html = page.html();
+  html.insert(html.find("<h1>"),
+              "<img alt='' src='http://example.invalid/x.png'><script>undefinedName()</script>"
+              "<div style='width:2000px'>wide</div>");
+  const json answer = measure(html, 390);
+  EXPECT_GT(answer["scroll_width"], 390);
+  EXPECT_NE(answer["wrong"].dump().find("undefinedName"), std::string::npos) << answer["wrong"];
+  EXPECT_NE(answer["wrong"].dump().find("fetches http"), std::string::npos) << answer["wrong"];
+}
+
+TEST_F(HtmlInBrowser, Prints) {
+  const std::string page = write("page.html", examplePage().html());
+  const auto pdf = folder_ / "page.pdf";
+  const auto run =
+      runChromium(folder_ / "profile", "--virtual-time-budget=5000 --no-pdf-header-footer --print-to-pdf='" +
+                                           pdf.string() + "' " + page);
+  EXPECT_EQ(run.exit_code, 0) << run.output;
+  const std::vector<uint8_t> bytes = readBytes(pdf);
+  ASSERT_GT(bytes.size(), 20'000u);
+  EXPECT_EQ(std::string(bytes.begin(), bytes.begin() + 5), "%PDF-");
+}
+
+}  // namespace
+}  // namespace sightline
