@@ -94,7 +94,7 @@ int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Ba
   StopSignal stop;
   ProgressPrinter printer(stdout, terminalColumns(stdout), bake.head().planned, bake.finished());
   const auto baker = [&](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
-    CellPvs pvs = bakeCell(device, scene, cell, index, options.params, progress, stop.flag());
+    CellPvs pvs = bakeCell(device, scene, cell, index, options.params, {progress, stop.flag()});
     if (!options.witnesses) pvs.witnesses.clear();
     return pvs;
   };

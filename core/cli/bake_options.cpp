@@ -7,6 +7,7 @@
 
 #include "core/cli/number_checks.h"
 #include "core/device/device.h"
+#include "core/gvs/thesis_params.h"
 
 namespace sightline {
 namespace {
@@ -23,7 +24,29 @@ CLI::Validator deviceName() {
       "");
 }
 
+/// The methods that work.
+const std::vector<std::string> kMethods = {"gvs++", "random"};
+
+/// First of the parameters: CLI11 takes options in the order of declaration, so any other wins over --thesis.
+void declareMethod(CLI::App& command, BakeParams& params) {
+  command
+      .add_option_function<std::string>(
+          "--method", [&params](const std::string& name) { params.method = *methodOf(name); },
+          "gvs++: random, border and reverse rays; random: random rays alone")
+      ->check(CLI::IsMember(kMethods))
+      ->type_name("NAME")
+      ->default_str(methodName(params.method))
+      ->group(kParamsGroup);
+  command
+      .add_flag_callback(
+          "--thesis", [&params] { setThesisParams(params); },
+          "the thesis's samples, distances in world units (0.001, 0.985) and stop rule; what is given "
+          "beside it wins")
+      ->group(kParamsGroup);
+}
+
 void declareParams(CLI::App& command, BakeParams& params) {
+  declareMethod(command, params);
   const auto count = [&](const char* name, auto& value, double low, double high, const char* help) {
     command.add_option(name, value, help)
         ->check(between(low, high))

@@ -73,6 +73,7 @@ void showCells(const std::filesystem::path& file) {
 }
 
 void showParams(const BakeParams& params) {
+  row("method", methodName(params.method));
   row("seed", std::to_string(params.seed));
   row("samples", fmt::format("n_rand {}, n_abs_edge {}, n_rs_edge {}, n_rs_area {}", params.n_rand,
                              params.n_abs_edge, params.n_rs_edge, params.n_rs_area));

@@ -50,6 +50,7 @@ std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile&
   }
   compareCells(differences, earlier.planned, wanted.planned);
   const BakeParams &a = earlier.params, &b = wanted.params;
+  compare(differences, "method", methodName(a.method), methodName(b.method));
   compare(differences, "n_rand", a.n_rand, b.n_rand);
   compare(differences, "n_abs_edge", a.n_abs_edge, b.n_abs_edge);
   compare(differences, "n_rs_edge", a.n_rs_edge, b.n_rs_edge);
@@ -65,6 +66,8 @@ std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile&
   compare(differences, "batch_rays", a.batch_rays, b.batch_rays);
   compare(differences, "validation_rays", a.validation_rays, b.validation_rays);
   compare(differences, "seed", a.seed, b.seed);
+  compare(differences, "raster_resolution", a.raster_resolution, b.raster_resolution);
+  compare(differences, "target_error", a.target_error, b.target_error);
   compare(differences, "witnesses", earlier.has_witnesses, wanted.has_witnesses);
   if (differences.empty() && a != b) differences.push_back("parameters");  // one that this list lacks
   return differences;

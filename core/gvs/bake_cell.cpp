@@ -56,13 +56,12 @@ std::vector<uint32_t> raysByArea(std::span<const Face> faces, uint32_t total) {
 class CellBake {
  public:
   CellBake(Device& device, const BakeParams& params, std::vector<Face> faces, uint32_t cell_index,
-           const ProgressCallback& progress, const std::atomic<bool>* stop)
+           const BakeHooks& hooks)
       : device_(device),
         params_(params),
         faces_(std::move(faces)),
         cell_index_(cell_index),
-        callback_(progress),
-        stop_(stop),
+        hooks_(hooks),
         face_rays_(raysByArea(faces_, params.n_rand)) {
     stage_params_.counts = uvec4(params.n_abs_edge, params.n_rs_edge, params.n_rs_area, faces_.size());
     stage_params_.shifts = haltonShifts(params.seed, cell_index, 0);
@@ -77,7 +76,7 @@ class CellBake {
     for (bool more = true; more;) {
       ++stats_.iterations;
       iteration_new_ = 0;
-      more = sampleRandom() && explore();
+      more = sampleRandom() && (!explores() || explore());
       quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
       if (quiet >= params_.quiet_iterations) more = false;
     }
@@ -128,6 +127,9 @@ class CellBake {
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
+  /// Whether new triangles are explored, or random rays are all there is.
+  bool explores() const { return params_.method != Method::kRandom; }
+
   /// Calls launch for the runs of the sequence that cover counts[f] rays of each face, starting at point
   /// `first`; stops early when it returns false.
   template <typename Launch>
@@ -155,6 +157,7 @@ class CellBake {
     });
     next_point_ += params_.n_rand;
     close(kStageRandom, stats_.random, start);
+    if (!explores()) explored_ = pvs_size_;
     return more;
   }
 
@@ -212,11 +215,21 @@ class CellBake {
     pvs_size_ += found;
     iteration_new_ += found;
     stats.seconds += std::chrono::duration<double>(Clock::now() - start).count();
+    if (hooks_.trace != nullptr) hooks_.trace->curve.push_back(curvePoint());
+  }
+
+  CurvePoint curvePoint() const {
+    const CellStats& s = stats_;
+    return {seconds(),
+            {s.random.rays, s.border.rays, s.reverse.rays},
+            {s.random.new_triangles, s.border.new_triangles, s.reverse.new_triangles},
+            pvs_size_,
+            s.iterations};
   }
 
   void report(uint32_t stage) {
-    if (stop_ != nullptr && *stop_) throw Interrupted{};
-    if (!callback_) return;
+    if (hooks_.stop != nullptr && *hooks_.stop) throw Interrupted{};
+    if (!hooks_.progress) return;
     BakeProgress p;
     p.iteration = stats_.iterations;
     p.stage = stage;
@@ -227,9 +240,9 @@ class CellBake {
     p.queued = pvs_size_ - explored_;
     p.seconds = seconds();
     // Before the first border rays nobody knows how much there is to explore.
-    const bool known = stats_.border.rays > 0 || stats_.iterations > 1 || validating_;
+    const bool known = !explores() || stats_.border.rays > 0 || stats_.iterations > 1 || validating_;
     p.seconds_left = known ? raysDue() * p.seconds / double(p.rays) : -1;
-    callback_(p);
+    hooks_.progress(p);
   }
 
   /// Estimate of the rays until the cell is done, if the queue grows no further and this iteration is the
@@ -247,8 +260,7 @@ class CellBake {
   const BakeParams& params_;
   std::vector<Face> faces_;
   uint32_t cell_index_;
-  const ProgressCallback& callback_;
-  const std::atomic<bool>* stop_;
+  const BakeHooks& hooks_;
   std::vector<uint32_t> face_rays_;  ///< random rays of an iteration, by face
   StageParams stage_params_{};
   CellStats stats_;
@@ -289,6 +301,9 @@ void checkParams(const BakeParams& p) {
   const auto require = [](bool good, const char* line) {
     if (!good) throw Error(line, kExitUsage);
   };
+  require(p.method == Method::kGvspp || p.method == Method::kRandom,
+          "this method is not built in: choose gvs++ or random");
+  require(p.target_error == 0, "target-error must be 0");
   require(p.n_rand >= 1 && p.n_rand <= 0xfffffffdu, "n-rand must be 1 .. 4294967293");
   require(p.n_abs_edge <= 1000, "n-abs-edge must be 0 .. 1000");
   require(p.n_rs_edge <= 1000, "n-rs-edge must be 0 .. 1000");
@@ -306,15 +321,20 @@ void checkParams(const BakeParams& p) {
 }
 
 CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
-                 const BakeParams& params, const ProgressCallback& progress, const std::atomic<bool>* stop) {
+                 const BakeParams& params, const BakeHooks& hooks) {
   checkParams(params);
+  if (hooks.trace != nullptr) *hooks.trace = {};
   CellPvs pvs;
   pvs.cell = cell;
-  CellBake bake(device, params, cellFaces(cell), cell_index, progress, stop);
+  CellBake bake(device, params, cellFaces(cell), cell_index, hooks);
   bake.run();
   bake.addContained(containedTriangles(scene, cell));
   bake.validate();
-  fillSet(device.readPvs(), pvs);
+  const std::vector<PvsEntry> entries = device.readPvs();
+  if (hooks.trace != nullptr) {
+    for (const PvsEntry& entry : entries) hooks.trace->order.push_back(entry.origin_triangle.w);
+  }
+  fillSet(entries, pvs);
   pvs.stats = bake.stats();
   return pvs;
 }

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "core/device/device.h"
+#include "core/gvs/bake_trace.h"
 #include "core/pvs/pvs.h"
 #include "core/scene/scene.h"
 
@@ -26,17 +27,23 @@ struct BakeProgress {
 /// Told about the bake; called on the caller's thread.
 using ProgressCallback = std::function<void(const BakeProgress&)>;
 
+/// What bakeCell may be asked for besides the set; nothing of it changes the set.
+struct BakeHooks {
+  ProgressCallback progress = {};
+  const std::atomic<bool>* stop = nullptr;  ///< ends the bake with Interrupted when it becomes true
+  BakeTrace* trace = nullptr;               ///< is replaced by how the set grew
+};
+
 /// Thrown by bakeCell when *stop became true: nothing of the cell is kept.
 struct Interrupted {};
 
 /// Throws Error (wrong usage) that names the parameter that is out of range.
 void checkParams(const BakeParams& params);
 
-/// Computes the PVS of one cell by GVS++ (Koch and Wimmer 2021; thesis, algorithms 5.1 and 6.1 to 6.4) on
-/// `device`, which holds `scene`. cell_index numbers the cell in its bake: it enters the random shifts only.
-/// Throws Error, Interrupted.
+/// Computes the PVS of one cell by params.method on `device`, which holds `scene`: by default GVS++ (Koch and
+/// Wimmer 2021; thesis, algorithms 5.1 and 6.1 to 6.4). cell_index numbers the cell in its bake: it enters
+/// the random shifts only. Throws Error, Interrupted.
 CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
-                 const BakeParams& params, const ProgressCallback& progress = {},
-                 const std::atomic<bool>* stop = nullptr);
+                 const BakeParams& params, const BakeHooks& hooks = {});
 
 }  // namespace sightline

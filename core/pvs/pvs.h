@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/pvs/method.h"
 #include "core/scene/scene.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/types.h"
@@ -13,6 +14,7 @@ namespace sightline {
 /// Parameters of a bake that decide its result (thesis 6.2.2, with its names). Same scene, cells, seed and
 /// parameters: same sets, bit for bit.
 struct BakeParams {
+  Method method = Method::kGvspp;
   uint32_t n_rand = 10'000'000;         ///< random rays an iteration, 1 .. 2^32 - 3
   uint32_t n_abs_edge = 20;             ///< samples along each long edge of the border polygon, 0..1000
   uint32_t n_rs_edge = 20;              ///< samples along each edge of the view cell's faces, 0..1000
@@ -28,6 +30,8 @@ struct BakeParams {
   uint32_t batch_rays = 1u << 22;  ///< rays of a border or reverse batch at most, 4096 or more
   uint64_t validation_rays = 10'000'000;  ///< fresh random rays after each cell that measure the miss rate
   uint64_t seed = 1;
+  uint32_t raster_resolution = 1000;  ///< method raster only: pixels along an edge of a hemicube's front side
+  double target_error = 0;  ///< stop a cell at this share of wrong pixels (95 % upper bound; 0: do not ask)
   bool operator==(const BakeParams&) const = default;
 };
 

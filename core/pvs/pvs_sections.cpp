@@ -21,6 +21,7 @@ void require(bool condition, const char* problem) {
 }
 
 void writeParams(ByteWriter& out, const BakeParams& params) {
+  out.number(uint32_t(params.method));
   for (uint32_t value : {params.n_rand, params.n_abs_edge, params.n_rs_edge, params.n_rs_area}) {
     out.number(value);
   }
@@ -31,10 +32,15 @@ void writeParams(ByteWriter& out, const BakeParams& params) {
   for (uint32_t value : {params.threshold, params.quiet_iterations, params.batch_rays}) out.number(value);
   for (uint64_t value : {params.max_rays, params.validation_rays, params.seed}) out.number(value);
   out.number(params.max_seconds);
+  out.number(params.raster_resolution);
+  out.number(params.target_error);
 }
 
 BakeParams readParams(ByteReader& in) {
   BakeParams params;
+  const auto method = in.number<uint32_t>();
+  require(method <= uint32_t(Method::kNaive), "unknown method");
+  params.method = Method(method);
   for (uint32_t* value : {&params.n_rand, &params.n_abs_edge, &params.n_rs_edge, &params.n_rs_area}) {
     *value = in.number<uint32_t>();
   }
@@ -49,6 +55,8 @@ BakeParams readParams(ByteReader& in) {
     *value = in.number<uint64_t>();
   }
   params.max_seconds = in.number<double>();
+  params.raster_resolution = in.number<uint32_t>();
+  params.target_error = in.number<double>();
   return params;
 }
 

@@ -46,7 +46,8 @@ Json toJson(const std::optional<TreeSummary>& tree, uint64_t triangles) {
 }
 
 Json toJson(const BakeParams& params) {
-  return {{"n_rand", params.n_rand},
+  return {{"method", methodName(params.method)},
+          {"n_rand", params.n_rand},
           {"n_abs_edge", params.n_abs_edge},
           {"n_rs_edge", params.n_rs_edge},
           {"n_rs_area", params.n_rs_area},
@@ -59,7 +60,9 @@ Json toJson(const BakeParams& params) {
           {"max_rays", params.max_rays},
           {"max_seconds", params.max_seconds},
           {"batch_rays", params.batch_rays},
-          {"validation_rays", params.validation_rays}};
+          {"validation_rays", params.validation_rays},
+          {"raster_resolution", params.raster_resolution},
+          {"target_error", params.target_error}};
 }
 
 }  // namespace

@@ -285,6 +285,38 @@ TEST(BakeCommand, ReportIsComplete) {
   EXPECT_EQ(report["cells"][1]["validation_rays"], 20000);
 }
 
+TEST(BakeCommand, MethodsAreChosenByNameAndKeptInTheFile) {
+  const Workplace place(1);
+  ASSERT_EQ(runProgram(place.bake("x.pvs", "--method random --report " + (place / "r.json"))).exit_code, 0);
+  const auto report = nlohmann::json::parse(readText(place / "r.json"));
+  EXPECT_EQ(report["parameters"]["method"], "random");
+  EXPECT_EQ(report["cells"][0]["stages"]["border"]["rays"], 0);
+  EXPECT_TRUE(contains(runProgram("info " + (place / "x.pvs")), "random"));
+  const ProgramRun other = runProgram(place.bake("x.pvs"));
+  EXPECT_EQ(other.exit_code, 1);
+  EXPECT_TRUE(contains(other, "method (random there, gvs++ now)")) << other.output;
+  const ProgramRun unknown = runProgram(place.bake("y.pvs", "--method best"));
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_TRUE(contains(unknown, "best")) << unknown.output;
+}
+
+/// What is given beside --thesis wins, wherever it stands.
+TEST(BakeCommand, TheThesisParametersGiveWayToOthers) {
+  const Workplace place(1);
+  for (const char* more : {"--thesis --delta-abs 0.25", "--delta-abs 0.25 --thesis"}) {
+    const ProgramRun run = runProgram(place.bake("x.pvs", std::string(more) + " --overwrite"));
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+    const BakeParams params = loadPvs(place / "x.pvs").params;
+    EXPECT_EQ(params.n_rand, 20000u);
+    EXPECT_EQ(params.n_abs_edge, 4u);
+    EXPECT_EQ(params.delta_abs, 0.25f);
+    EXPECT_EQ(params.delta_abs_relative, 0.0f);
+    EXPECT_EQ(params.delta_rs, 0.985f);
+    EXPECT_EQ(params.delta_rs_relative, 0.0f);
+    EXPECT_EQ(params.threshold, 10u);
+  }
+}
+
 TEST(BakeCommand, DrawsPicturesAlsoOfACompleteBake) {
   const Workplace place(1);
   ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);

@@ -161,6 +161,10 @@ TEST(Bake, NamesEveryDifferenceOfTheInputs) {
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.planned[2].size.x = 9; }), "cell-2"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.planned[2].name = "z"; }), "z now"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.has_witnesses = true; }), "witnesses"));
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.method = Method::kGvs; }),
+                       "method (random there, gvs now)"));
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.raster_resolution = 7; }), "raster_resolution"));
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.target_error = 0.5; }), "target_error"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.n_rand = 7; }), "n_rand (4321 there, 7 now)"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.n_abs_edge = 7; }), "n_abs_edge"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.n_rs_edge = 7; }), "n_rs_edge"));

@@ -49,10 +49,13 @@ inline PvsFile examplePvs(bool witnesses = true) {
   pvs.triangle_count = 1000;
   pvs.scene_name = "courtyard.obj";
   pvs.device = "cpu";
+  pvs.params.method = Method::kRandom;
   pvs.params.n_rand = 4321;
   pvs.params.delta_abs = 0.001f;
   pvs.params.max_seconds = 12.5;
   pvs.params.seed = 77;
+  pvs.params.raster_resolution = 640;
+  pvs.params.target_error = 0.125;
   pvs.has_witnesses = witnesses;
   pvs.planned = {{"a", {1, 2, 3}, {4, 5, 0}, {6, 7, 8}},
                  {"b-\xc3\xa9", {0, 0, 0}, {1, 1, 1}, {0, 0, 0}},

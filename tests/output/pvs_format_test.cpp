@@ -78,6 +78,7 @@ void checkHead(Cursor head, const PvsFile& want) {
   EXPECT_EQ(head.u32(), want.triangle_count);
   EXPECT_EQ(head.u32(), 1u);
   const BakeParams& p = want.params;
+  EXPECT_EQ(head.u32(), uint32_t(p.method));
   for (uint32_t value : {p.n_rand, p.n_abs_edge, p.n_rs_edge, p.n_rs_area}) EXPECT_EQ(head.u32(), value);
   for (float value : {p.delta_abs_relative, p.delta_abs, p.delta_rs_relative, p.delta_rs}) {
     EXPECT_EQ(head.take<float>(), value);
@@ -85,6 +86,8 @@ void checkHead(Cursor head, const PvsFile& want) {
   for (uint32_t value : {p.threshold, p.quiet_iterations, p.batch_rays}) EXPECT_EQ(head.u32(), value);
   for (uint64_t value : {p.max_rays, p.validation_rays, p.seed}) EXPECT_EQ(head.u64(), value);
   EXPECT_EQ(head.f64(), p.max_seconds);
+  EXPECT_EQ(head.u32(), p.raster_resolution);
+  EXPECT_EQ(head.f64(), p.target_error);
   EXPECT_EQ(head.text(), want.scene_name);
   EXPECT_EQ(head.text(), want.device);
   ASSERT_EQ(head.u32(), want.planned.size());
@@ -144,7 +147,7 @@ TEST(PvsFormat, AReaderWrittenFromTheDocumentReadsAFile) {
   savePvs(want, folder / "x.pvs");
   const auto bytes = readBytes(folder / "x.pvs");
   Cursor file{bytes.data(), bytes.data() + bytes.size()};
-  const uint8_t prelude[16] = {0x89, 0x53, 0x4c, 0x50, 0x56, 0x53, 0x0d, 0x0a, 1};
+  const uint8_t prelude[16] = {0x89, 0x53, 0x4c, 0x50, 0x56, 0x53, 0x0d, 0x0a, 2};
   EXPECT_EQ(std::memcmp(file.skip(16), prelude, 16), 0);
   checkHead(section(file, "HEAD"), want);
   for (uint32_t i = 0; i < want.cells.size(); ++i) checkCell(section(file, "CELL"), i, want.cells[i]);
