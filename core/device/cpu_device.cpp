@@ -329,6 +329,7 @@ DeviceInfo cpuDeviceInfo() {
   info.name = fmt::format("host processor, {} threads", tbb::info::default_concurrency());
   info.driver = "built in";
   info.layout = "8-wide, single rays";
+  info.on_cpu = true;
   return info;
 }
 

@@ -22,6 +22,7 @@ struct DeviceInfo {
   std::string layout;    ///< tree layout and kind of traversal, e.g. "bvh2, packets of 8"
   std::string unusable;  ///< why it cannot run; empty: it can
   uint64_t memory_bytes = 0;
+  bool on_cpu = false;   ///< a processor does the work (cpu, PoCL, lavapipe): fewer rays are to be had
   // The driver's own trees (vulkan), once a scene is on the device; else 0.
   uint32_t driver_tree_parts = 0;        ///< bottom-level acceleration structures
   uint64_t driver_tree_bytes = 0;        ///< of all acceleration structures

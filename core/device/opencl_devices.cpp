@@ -48,6 +48,7 @@ OpenClDevice describeDevice(cl_device_id id, size_t index) {
     device.info.driver =
         clDeviceText(id, CL_DEVICE_VERSION) + ", driver " + clDeviceText(id, CL_DRIVER_VERSION);
     device.info.layout = device.type & CL_DEVICE_TYPE_CPU ? "bvh2, packets of 8 rays" : "bvh2, single rays";
+    device.info.on_cpu = (device.type & CL_DEVICE_TYPE_CPU) != 0;
     device.info.memory_bytes = clDeviceValue<cl_ulong>(id, CL_DEVICE_GLOBAL_MEM_SIZE);
     device.info.unusable = whyUnusable(id);
   } catch (const Error& error) {

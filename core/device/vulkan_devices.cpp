@@ -66,6 +66,7 @@ VulkanDeviceChoice describe(const VulkanApi& api, VkPhysicalDevice physical, siz
   api.vkGetPhysicalDeviceProperties2(physical, &properties);
   const uint32_t version = properties.properties.apiVersion;
   device.type = properties.properties.deviceType;
+  device.info.on_cpu = device.type == VK_PHYSICAL_DEVICE_TYPE_CPU;
   device.info.name = properties.properties.deviceName;
   device.info.driver =
       fmt::format("Vulkan {}.{}.{}, {} {}", VK_API_VERSION_MAJOR(version), VK_API_VERSION_MINOR(version),

@@ -1,0 +1,46 @@
+#pragma once
+#include <tbb/enumerable_thread_specific.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/measure/error_regions.h"
+#include "core/measure/ranked_set.h"
+
+namespace sightline {
+
+/// Sorts the pixels of id images into right and wrong ones, for all prefixes of several sets.
+class Classifier {
+ public:
+  /// The sets of one scene, at least one. Throws Error.
+  Classifier(std::span<const RankedSet> sets, uint32_t views, uint32_t resolution);
+
+  /// Images (Device::traceViews) of the views from `first` on, as many as `images` holds.
+  void classify(uint32_t first, std::span<const uint32_t> images);
+
+  /// Error of one view, of each prefix of a set.
+  std::span<const ImageError> errors(size_t set, uint32_t view) const;
+
+ private:
+  struct Scratch {
+    explicit Scratch(uint32_t resolution) : regions(resolution) {}
+    ErrorRegions regions;
+    std::vector<uint32_t> suspects, pixels;
+    std::vector<uint16_t> levels;
+  };
+  struct Set {
+    std::vector<uint16_t> levels;  ///< missingLevels
+    size_t prefixes = 0;
+    std::vector<ImageError> errors;  ///< view by view, of each all prefixes
+  };
+
+  void classifyView(uint32_t view, std::span<const uint32_t> image);
+
+  uint32_t resolution_;
+  std::vector<uint8_t> suspect_;  ///< a triangle: missed by some prefix of some set
+  std::vector<Set> sets_;
+  tbb::enumerable_thread_specific<Scratch> scratch_;
+};
+
+}  // namespace sightline

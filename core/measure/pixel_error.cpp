@@ -1,0 +1,137 @@
+#include "core/measure/pixel_error.h"
+
+#include <fmt/core.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <numeric>
+
+#include "core/error.h"
+#include "core/gvs/bake_cell.h"
+#include "core/measure/classifier.h"
+
+namespace sightline {
+namespace {
+
+/// Pixels of the first launch, and how long one should take: progress and Ctrl-C, on slow devices too.
+constexpr uint64_t kFirstPixels = 1u << 18;
+constexpr double kLaunchSeconds = 0.25;
+
+using Clock = std::chrono::steady_clock;
+
+double secondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Traces all views, a launch at a time; the images of one launch are classified while the device traces the
+/// next.
+void traceAndClassify(Device& device, std::span<const ViewFrame> frames, uint32_t resolution,
+                      Classifier& classifier, const MeasureCallback& progress,
+                      const std::atomic<bool>* stop) {
+  const auto start = Clock::now();
+  const size_t pixels = size_t(resolution) * resolution, most = viewsALaunch(resolution);
+  size_t launch_views = std::clamp<size_t>(kFirstPixels / pixels, 1, most);
+  std::array<std::vector<uint32_t>, 2> images;
+  tbb::task_group classification;
+  try {
+    for (size_t done = 0, turn = 0; done < frames.size(); turn ^= 1) {
+      if (stop && *stop) throw Interrupted{};
+      const auto launch_start = Clock::now();
+      const size_t count = std::min(launch_views, frames.size() - done);
+      images[turn].resize(count * pixels);
+      device.traceViews(frames.subspan(done, count), resolution, images[turn]);
+      if (secondsSince(launch_start) < kLaunchSeconds) launch_views = std::min(most, 2 * launch_views);
+      classification.wait();
+      classification.run(
+          [&classifier, &image = images[turn], done] { classifier.classify(uint32_t(done), image); });
+      done += count;
+      if (progress) {
+        progress({uint32_t(done), uint32_t(frames.size()), done * pixels, secondsSince(start)});
+      }
+    }
+  } catch (...) {
+    classification.wait();
+    throw;
+  }
+  classification.wait();
+}
+
+SetError summarizeSet(const Classifier& classifier, size_t set, size_t prefixes,
+                      const MeasureOptions& options) {
+  SetError result;
+  result.by_prefix.resize(prefixes);
+  std::vector<uint32_t> views;
+  for (uint32_t view = 0; view < options.views; ++view) {
+    const std::span<const ImageError> errors = classifier.errors(set, view);
+    if (errors.back().wrong > 0) views.push_back(view);
+    for (size_t k = 0; k < prefixes; ++k) {
+      PixelError& sum = result.by_prefix[k];
+      const ImageError& image = errors[k];
+      ++sum.views;
+      sum.pixels += uint64_t(options.resolution) * options.resolution;
+      sum.wrong += image.wrong;
+      sum.regions += image.regions;
+      if (image.wrong > sum.max_wrong) sum.worst_view = view;
+      sum.max_wrong = std::max(sum.max_wrong, image.wrong);
+      sum.max_regions = std::max(sum.max_regions, image.regions);
+      sum.largest_region = std::max(sum.largest_region, image.largest_region);
+    }
+  }
+  const auto wrong = [&](uint32_t view) { return classifier.errors(set, view).back().wrong; };
+  std::stable_sort(views.begin(), views.end(), [&](uint32_t a, uint32_t b) { return wrong(a) > wrong(b); });
+  views.resize(std::min<size_t>(views.size(), options.worst_views));
+  result.worst_views = std::move(views);
+  return result;
+}
+
+}  // namespace
+
+void checkOptions(const MeasureOptions& options) {
+  const auto require = [](bool good, const std::string& line) {
+    if (!good) throw Error(line, kExitUsage);
+  };
+  require(options.views >= 1, "views must be at least 1");
+  require(options.resolution >= 1 && options.resolution <= kMaxViewResolution,
+          fmt::format("resolution must be 1 .. {}", kMaxViewResolution));
+  require(options.fov >= kSmallestFov && options.fov <= kLargestFov,
+          fmt::format("fov must be {} .. {} degrees", kSmallestFov, kLargestFov));
+}
+
+std::vector<SetError> measureCell(Device& device, const ViewCell& cell, uint32_t cell_index,
+                                  std::span<const RankedSet> sets, const MeasureOptions& options,
+                                  const MeasureCallback& progress, const std::atomic<bool>* stop) {
+  checkOptions(options);
+  std::vector<SetError> errors;
+  if (sets.empty()) return errors;
+  Classifier classifier(sets, options.views, options.resolution);
+  const std::vector<ViewFrame> frames =
+      measureViews(cell, cell_index, options.views, options.seed, options.fov);
+  traceAndClassify(device, frames, options.resolution, classifier, progress, stop);
+  for (size_t s = 0; s < sets.size(); ++s) {
+    errors.push_back(summarizeSet(classifier, s, sets[s].prefixes.size(), options));
+  }
+  return errors;
+}
+
+SceneError summarize(std::span<const PixelError> cells) {
+  SceneError scene;
+  for (const PixelError& cell : cells) {
+    scene.average_wrong += cell.averageWrong();
+    scene.average_regions += cell.averageRegions();
+    scene.wrong_share += cell.wrongShare();
+    scene.mean_max_wrong += cell.max_wrong;
+    scene.mean_largest_region += cell.largest_region;
+    scene.max_wrong = std::max(scene.max_wrong, cell.max_wrong);
+    scene.largest_region = std::max(scene.largest_region, cell.largest_region);
+  }
+  if (cells.empty()) return scene;
+  for (double* mean : {&scene.average_wrong, &scene.average_regions, &scene.wrong_share,
+                       &scene.mean_max_wrong, &scene.mean_largest_region}) {
+    *mean /= double(cells.size());
+  }
+  return scene;
+}
+
+}  // namespace sightline
