@@ -15,6 +15,9 @@ namespace {
 
 /// Rays of one launch of traceRays: bounds the buffers.
 constexpr size_t kRayChunk = 1u << 20;
+/// Read back at once. The buffer is kept, as those of uploads are: the H200's driver takes 4 ms to make 16
+/// MiB.
+constexpr uint64_t kReadbackBytes = 64u << 20;
 /// Work items of a group with ray queries, if the options name no other.
 constexpr uint32_t kGroup = 64;
 
@@ -119,9 +122,7 @@ class VulkanDevice final : public Device {
     set_.fit(size_ + count);
     reserve(new_ids_, launch_.indices, triangles.size_bytes(), "list of contained triangles");
     runner_.commands.finish();
-    VulkanUpload upload(context_);
-    upload.write(new_ids_, triangles.data(), triangles.size_bytes());
-    upload.finish();
+    upload(new_ids_, triangles.data(), triangles.size_bytes());
     launch_.list_end = size_;
     traceUntilItFits([&] { runner_.run(contained_, count); });
     size_ += count;
@@ -146,17 +147,13 @@ class VulkanDevice final : public Device {
 
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override {
     const size_t chunk = std::min(kRayChunk, rays.size());
-    const VulkanBuffer input = context_.buffer(chunk * sizeof(Ray), "rays");
-    const VulkanBuffer output = context_.buffer(chunk * sizeof(Hit), "hits");
-    launch_.rays = input.address();
-    launch_.hits = output.address();
-    VulkanUpload upload(context_);
+    reserve(rays_buffer_, launch_.rays, chunk * sizeof(Ray), "rays");
+    reserve(hits_buffer_, launch_.hits, chunk * sizeof(Hit), "hits");
     for (size_t first = 0; first < rays.size(); first += chunk) {
       const auto count = static_cast<uint32_t>(std::min(chunk, rays.size() - first));
-      upload.write(input, &rays[first], count * sizeof(Ray));
-      upload.finish();
+      upload(rays_buffer_, &rays[first], count * sizeof(Ray));
       runner_.run(tracing(rays_stage_, "trace_rays"), count);
-      read(output, &hits[first], count * sizeof(Hit));
+      read(hits_buffer_, &hits[first], count * sizeof(Hit));
     }
   }
 
@@ -168,15 +165,9 @@ class VulkanDevice final : public Device {
       const size_t count = std::min(most, views.size() - first), bytes = count * view_pixels * 4;
       reserve(views_, launch_.rays, count * sizeof(ViewFrame), "views");
       reserve(view_triangles_, launch_.hits, bytes, "images of triangle ids");
-      if (view_readback_.bytes() < bytes) {
-        view_readback_ = VulkanBuffer();
-        view_readback_ = context_.buffer(bytes, "staging memory", VulkanMemory::kReadback);
-      }
       updateInPieces(views_, &views[first], count);
       runner_.run(tracing(views_stage_, "trace_views"), static_cast<uint32_t>(count) * viewItems(resolution));
-      runner_.commands.copy(view_triangles_, view_readback_, bytes);
-      runner_.takeCounts();
-      std::memcpy(&triangles[first * view_pixels], view_readback_.mapped(), bytes);
+      read(view_triangles_, &triangles[first * view_pixels], bytes);
     }
   }
 
@@ -243,12 +234,24 @@ class VulkanDevice final : public Device {
     }
   }
 
+  /// Waits until the data has arrived.
+  void upload(const VulkanBuffer& target, const void* data, uint64_t bytes) {
+    if (!upload_) upload_.emplace(context_);
+    upload_->write(target, data, bytes);
+    upload_->finish();
+  }
+
   void read(const VulkanBuffer& buffer, void* target, uint64_t bytes) {
-    if (bytes == 0) return;
-    const VulkanBuffer staging = context_.buffer(bytes, "staging memory", VulkanMemory::kReadback);
-    runner_.commands.copy(buffer, staging, bytes);
-    runner_.takeCounts();
-    std::memcpy(target, staging.mapped(), bytes);
+    if (readback_.bytes() < std::min(bytes, kReadbackBytes)) {
+      readback_ = VulkanBuffer();
+      readback_ = context_.buffer(std::min(bytes, kReadbackBytes), "staging memory", VulkanMemory::kReadback);
+    }
+    for (uint64_t first = 0; first < bytes; first += kReadbackBytes) {
+      const uint64_t count = std::min(bytes - first, kReadbackBytes);
+      runner_.commands.copy(buffer, readback_, count, first);
+      runner_.takeCounts();
+      std::memcpy(static_cast<char*>(target) + first, readback_.mapped(), count);
+    }
   }
 
   /// Makes room for `count` entries of the list, at least doubling it.
@@ -272,7 +275,8 @@ class VulkanDevice final : public Device {
   VulkanScene scene_;
   VulkanSet set_;
   VulkanBuffer faces_, entries_, segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_,
-      border_edges_, reverse_items_, views_, view_triangles_, view_readback_;
+      border_edges_, reverse_items_, rays_buffer_, hits_buffer_, views_, view_triangles_, readback_;
+  std::optional<VulkanUpload> upload_;
   VulkanStage count_, sum_, write_, edges_, reverse_list_, append_, contained_;
   std::optional<VulkanStage> random_, missing_, border_, reverse_, rays_stage_, views_stage_;
   std::vector<RandomSegment> segments_;  ///< of the batch
