@@ -1,0 +1,119 @@
+// Where the time of a bake goes: seconds of each kind of device call, and of the host between them. The
+// tracing stages make their rays and insert what they hit in the same launch.
+//
+//   bench_bake SCENE CELLS.json [--device NAME] [--runs N] [--batch-rays N] [--spatial-splits]
+//
+// Of each cell: the run with the median time; the first run of all warms up and does not count.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "core/error.h"
+#include "core/gvs/bake_cell.h"
+#include "core/scene/scene.h"
+#include "tests/bench/timed_device.h"
+
+namespace sightline {
+namespace {
+
+struct Options {
+  std::string scene, cells, device = "opencl";
+  int runs = 3;
+  uint32_t batch_rays = BakeParams{}.batch_rays;
+  bool spatial_splits = false;
+};
+
+struct Run {
+  double seconds;
+  CellStats stats;
+  size_t set;
+  std::map<std::string, double> parts;
+};
+
+Run bakeOnce(Device& device, const Scene& scene, const ViewCell& cell, uint32_t index,
+             const Options& options) {
+  BakeParams params;
+  params.batch_rays = options.batch_rays;
+  TimedDevice timed(device);
+  const auto start = std::chrono::steady_clock::now();
+  const CellPvs pvs = bakeCell(timed, scene, cell, index, params);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return {seconds, pvs.stats, pvs.triangles.size(), timed.seconds()};
+}
+
+void print(const std::string& cell, const Run& run) {
+  const CellStats& s = run.stats;
+  const uint64_t rays = s.random.rays + s.border.rays + s.reverse.rays + s.validation_rays;
+  fmt::print("{}: {:.3f} s, {} triangles, {:.1f} million rays, {:.0f} Mrays/s\n", cell, run.seconds, run.set,
+             double(rays) * 1e-6, double(rays) * 1e-6 / run.seconds);
+  const std::map<std::string, uint64_t> rays_of = {{"trace random", s.random.rays},
+                                                   {"trace border", s.border.rays},
+                                                   {"trace reverse", s.reverse.rays},
+                                                   {"trace validation", s.validation_rays}};
+  double device = 0, tracing = 0;
+  for (const auto& [what, seconds] : run.parts) {
+    const auto traced = rays_of.find(what);
+    device += seconds;
+    if (traced != rays_of.end()) tracing += seconds;
+    fmt::print("  {:<17} {:8.4f} s {:5.1f} %", what, seconds, 100 * seconds / run.seconds);
+    if (traced != rays_of.end()) fmt::print("  {:7.0f} Mrays/s", double(traced->second) * 1e-6 / seconds);
+    fmt::print("\n");
+  }
+  fmt::print("  {:<17} {:8.4f} s {:5.1f} %\n", "host", run.seconds - device,
+             100 * (run.seconds - device) / run.seconds);
+  fmt::print("  tracing stages in all: {:.1f} %\n", 100 * tracing / run.seconds);
+}
+
+void bench(const Options& options) {
+  const Scene scene = loadScene(options.scene);
+  const std::vector<ViewCell> cells = loadCells(options.cells);
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles, {.spatial_splits = options.spatial_splits});
+  const auto device = makeDevice(options.device, scene, bvh);
+  fmt::print("{} ({}), {} triangles\n", device->info().id, device->info().name, scene.triangles.size());
+  bakeOnce(*device, scene, cells.at(0), 0, options);
+  for (uint32_t i = 0; i < cells.size(); ++i) {
+    std::vector<Run> runs;
+    for (int run = 0; run < options.runs; ++run) {
+      runs.push_back(bakeOnce(*device, scene, cells[i], i, options));
+    }
+    std::sort(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.seconds < b.seconds; });
+    print(cells[i].name, runs[runs.size() / 2]);
+  }
+}
+
+Options parse(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string name = argv[i];
+    const auto value = [&] { return i + 1 < argc ? argv[++i] : throw Error(name + ": wants a value"); };
+    if (name == "--device")
+      options.device = value();
+    else if (name == "--runs")
+      options.runs = std::max(1, std::atoi(value()));
+    else if (name == "--batch-rays")
+      options.batch_rays = uint32_t(std::strtoul(value(), nullptr, 10));
+    else if (name == "--spatial-splits")
+      options.spatial_splits = true;
+    else if (options.scene.empty())
+      options.scene = name;
+    else
+      options.cells = name;
+  }
+  if (options.cells.empty()) throw Error("wanted: bench_bake SCENE CELLS.json");
+  return options;
+}
+
+}  // namespace
+}  // namespace sightline
+
+int main(int argc, char** argv) {
+  try {
+    sightline::bench(sightline::parse(argc, argv));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "bench_bake: {}\n", error.what());
+    return 1;
+  }
+}
