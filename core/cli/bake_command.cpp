@@ -4,10 +4,12 @@
 #include <chrono>
 
 #include "core/cli/bake_options.h"
+#include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/stop_signal.h"
 #include "core/error.h"
 #include "core/gvs/bake.h"
+#include "core/report/bake_page.h"
 #include "core/report/cell_pictures.h"
 #include "core/report/progress.h"
 #include "core/report/report.h"
@@ -81,8 +83,8 @@ void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, 
   }
 }
 
-/// Bakes what is missing, with progress. Returns the exit code.
-int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Bake& bake) {
+/// Bakes what is missing, with progress, and keeps how the sets grew for the page. Returns the exit code.
+int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Bake& bake, BakePage& page) {
   if (!bake.partProblem().empty()) {
     say(fmt::format("{}: cut off or damaged after {} whole cells ({}); the rest is baked again",
                     bake.partFile().string(), bake.resumed(), bake.partProblem()));
@@ -94,7 +96,10 @@ int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Ba
   StopSignal stop;
   ProgressPrinter printer(stdout, terminalColumns(stdout), bake.head().planned, bake.finished());
   const auto baker = [&](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
-    CellPvs pvs = bakeCell(device, scene, cell, index, options.params, {progress, stop.flag()});
+    BakeTrace trace;
+    CellPvs pvs = bakeCell(device, scene, cell, index, options.params, {progress, stop.flag(), &trace});
+    page.curves.resize(index);  // empty for cells of an earlier run
+    page.curves.push_back(std::move(trace.curve));
     if (!options.witnesses) pvs.witnesses.clear();
     return pvs;
   };
@@ -114,34 +119,59 @@ int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Ba
   return stop.exitCode();
 }
 
-void drawCells(const BakeOptions& options, const Scene& scene, Device& device) {
+std::vector<uint8_t> readPicture(const std::filesystem::path& file) {
+  const FileBytes bytes = readFile(file);
+  return {bytes.view().begin(), bytes.view().end()};
+}
+
+/// Draws the pictures, and adds them to the page if one is written.
+void drawCells(const BakeOptions& options, const Scene& scene, Device& device, BakePage& page) {
   const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
     device.traceRays(rays, hits);
   };
   const PvsFile pvs = loadPvs(options.out);
   for (uint32_t i = 0; i < pvs.cells.size(); ++i) {
     const double missing = saveCellPictures(trace, scene, pvs.cells[i], i, options.pictures);
-    say(fmt::format("{}: {} of the pixels from inside show a missing triangle",
-                    (options.pictures / pictureName(pvs.cells[i].cell.name, i)).string(), missing));
+    const std::string& name = pvs.cells[i].cell.name;
+    const std::string file = (options.pictures / pictureName(name, i)).string();
+    say(fmt::format("{}: {} of the pixels from inside show a missing triangle", file, missing));
+    if (options.html.empty()) continue;
+    page.pictures.push_back({readPicture(file + "-outside.png"), name + " from outside"});
+    page.pictures.push_back({readPicture(file + "-inside.png"),
+                             fmt::format("{} from inside, {:.2g} of the pixels missing", name, missing)});
   }
+}
+
+void writeText(const std::filesystem::path& path, const std::string& text) {
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+void writePage(const BakeOptions& options, const BakeReport& report, BakePage& page) {
+  page.curves.resize(report.cells.size());
+  page.command = commandLine();
+  if (!options.csv.empty()) writeText(options.csv, curvesCsv(report, page.curves));
+  if (!options.html.empty()) bakePage(report, page).save(options.html);
 }
 
 void writeReport(const BakeOptions& options, const Bake& bake, BakeReport& report) {
   report.cells = bake.finished();
   report.baked_on = bake.head().device;
   report.peak_process_bytes = peakProcessBytes();
-  if (options.report.empty()) return;
-  OutputFile file(options.report);
-  file.write(reportJson(report));
-  file.commit();
+  if (!options.report.empty()) writeText(options.report, reportJson(report));
 }
 
 void runBake(const BakeOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   checkParams(options.params);
-  requireSeparate(std::array{options.out, options.report}, std::array{options.scene, options.cells});
+  const std::array reports = {options.report, options.html, options.csv};
+  requireSeparate(std::array{options.out, options.report, options.html, options.csv},
+                  std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
-  if (!options.report.empty()) OutputFile probe(options.report);  // fail before the work, not after it
+  for (const std::filesystem::path& file : reports) {
+    if (!file.empty()) OutputFile probe(file);  // fail before the work, not after it
+  }
   const Scene scene = loadScene(options.scene, {.repair = options.repair});
   Bake bake(inputsOf(options, scene), options.out, options.overwrite);
   say(fmt::format("{}: {} triangles, {} objects; {} cells", options.scene.string(), scene.triangles.size(),
@@ -149,6 +179,7 @@ void runBake(const BakeOptions& options) {
   BakeReport report = startReport(options, scene, bake);
 
   int exit_code = 0;
+  BakePage page;
   Tracer tracer;
   if (bake.complete()) {
     say(fmt::format("{}: already complete, nothing to bake (--overwrite bakes again)", options.out.string()));
@@ -156,7 +187,7 @@ void runBake(const BakeOptions& options) {
   if (!bake.complete() || !options.pictures.empty()) {
     openTracer(tracer, options, scene, report);
   }
-  if (!bake.complete()) exit_code = bakeCells(options, scene, *tracer.device, bake);
+  if (!bake.complete()) exit_code = bakeCells(options, scene, *tracer.device, bake, page);
 
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   if (!bake.finished().empty()) {
@@ -164,8 +195,9 @@ void runBake(const BakeOptions& options) {
     std::fflush(stdout);
   }
   writeReport(options, bake, report);
+  if (exit_code == 0 && !options.pictures.empty()) drawCells(options, scene, *tracer.device, page);
+  writePage(options, report, page);
   if (exit_code != 0) throw ExitCode{exit_code};
-  if (!options.pictures.empty()) drawCells(options, scene, *tracer.device);
 }
 
 }  // namespace

@@ -121,6 +121,12 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
       ->type_name("OUT.pvs");
   command.add_option("--report", options.report, "write what was done as JSON (docs/report.md)")
       ->type_name("R.json");
+  command
+      .add_option("--html", options.html,
+                  "write a page with tables, charts and the pictures, if there are any")
+      ->type_name("R.html");
+  command.add_option("--csv", options.csv, "write how the sets grew, a line a batch (docs/report.md)")
+      ->type_name("R.csv");
   command.add_option("--pictures", options.pictures, "draw each cell from outside and from inside, as PNG")
       ->type_name("DIR");
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");

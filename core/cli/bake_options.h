@@ -11,8 +11,8 @@ namespace sightline {
 /// What `sightline bake` was asked for.
 struct BakeOptions {
   std::filesystem::path scene, cells, out;
-  std::filesystem::path report;    ///< empty: none
-  std::filesystem::path pictures;  ///< folder; empty: none
+  std::filesystem::path report, html, csv;  ///< empty: none
+  std::filesystem::path pictures;           ///< folder; empty: none
   std::string device = "opencl";
   std::string set = "auto";  ///< as device_options.set, for the report
   DeviceOptions device_options;

@@ -3,7 +3,7 @@
   'use strict';
   const kMarkers = ['circle', 'triangle', 'rect', 'rectRot', 'cross', 'star', 'crossRot', 'rectRounded'];
   const kColors = 10;
-  const kMarkersALine = 9;  // more would hide the line
+  const kMarkersALine = 8;  // about: more would hide the line
 
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
   const colorOf = (number) => style('--c' + (number % kColors));
@@ -51,22 +51,37 @@
     });
   }
 
-  function dataset(series) {
-    const step = Math.max(1, Math.ceil(series.points.length / kMarkersALine));
-    const last = series.points.length - 1;
-    const radius = (index) => (!series.line ? 5 : index === last || index % step === 0 ? 3.5 : 0);
+  // The first, the last, and others a good way apart along the axis.
+  function markedPoints(points, logX) {
+    const place = (point) => (logX ? Math.log(point.x) : point.x);
+    const marked = new Set([0, points.length - 1]);
+    if (points.length === 0) return marked;
+    const step = (place(points[points.length - 1]) - place(points[0])) / kMarkersALine;
+    let before = place(points[0]);
+    points.forEach((point, i) => {
+      if (Math.abs(place(point) - before) < Math.abs(step)) return;
+      marked.add(i);
+      before = place(point);
+    });
+    return marked;
+  }
+
+  function dataset(series, logX) {
+    const marked = markedPoints(series.points, logX);
     return {
-      label: series.name, data: series.points, showLine: series.line, borderWidth: 2, pointBorderWidth: 1.5,
-      borderDash: series.dashed ? [6, 4] : [], pointStyle: kMarkers[series.color % kMarkers.length],
-      pointRadius: (context) => radius(context.dataIndex), pointHitRadius: 8, pointHoverRadius: 6,
+      label: series.name, data: series.points, showLine: series.line, borderWidth: 2,
+      borderDash: series.dashed ? [6, 4] : [],
+      pointStyle: series.line ? kMarkers[series.color % kMarkers.length] : 'circle',
+      pointRadius: (context) => (!series.line ? 5.5 : marked.has(context.dataIndex) ? 3.5 : 0),
+      pointBorderWidth: 1.5, pointHitRadius: 8, pointHoverRadius: 6,
     };
   }
 
   function paint(chart, all) {
     const ink = style('--ink'), line = style('--line');
     chart.data.datasets.forEach((set, i) => {
-      set.borderColor = set.backgroundColor = set.pointBorderColor = set.pointBackgroundColor =
-          colorOf(all[i].color);
+      set.borderColor = set.backgroundColor = set.pointBackgroundColor = colorOf(all[i].color);
+      set.pointBorderColor = all[i].line ? set.borderColor : ink;
     });
     for (const scale of Object.values(chart.options.scales)) {
       scale.ticks.color = scale.title.color = ink;
@@ -126,7 +141,7 @@
     const label = (item) => `${item.dataset.label}: ${short(item.parsed.y)} ${y} at ${short(item.parsed.x)} ${x}`;
     const chart = new Chart(figure.querySelector('.plot canvas'), {
       type: 'line',
-      data: {datasets: all.map(dataset)},
+      data: {datasets: all.map((series) => dataset(series, logX))},
       options: {
         animation: false, responsive: true, maintainAspectRatio: false, parsing: false,
         devicePixelRatio: Math.max(2, window.devicePixelRatio || 1),  // sharp on paper

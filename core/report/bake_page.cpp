@@ -1,0 +1,203 @@
+#include "core/report/bake_page.h"
+
+#include <fmt/format.h>
+
+#include "core/report/csv.h"
+#include "core/report/text.h"
+
+namespace sightline {
+namespace {
+
+/// Cells whose iterations are drawn stage by stage: more would make a page that nobody scrolls through.
+constexpr size_t kStageCharts = 12;
+/// The thesis's example of a termination criterion: dots of figures 7.4 to 7.8.
+constexpr uint32_t kExampleThreshold = 10;
+/// The thesis's colours of the stages (figure 7.3), as numbers of the page's colours: red, blue, green.
+constexpr uint32_t kStageColors[] = {1, 0, 2};
+
+using Curve = std::vector<CurvePoint>;
+
+uint64_t raysOf(const CurvePoint& point) {
+  return point.rays[0] + point.rays[1] + point.rays[2];
+}
+
+/// The last point of each iteration.
+Curve iterationEnds(const Curve& curve) {
+  Curve ends;
+  for (size_t i = 0; i < curve.size(); ++i) {
+    if (i + 1 == curve.size() || curve[i].iteration != curve[i + 1].iteration) ends.push_back(curve[i]);
+  }
+  return ends;
+}
+
+/// The set's size over x(point), one line a cell, and a dot where T = 10 stops.
+template <typename X>
+ReportChart sizeChart(const BakeReport& report, const std::vector<Curve>& curves, const std::string& x_name,
+                      X&& x) {
+  ReportChart chart{.title = "Set size over " + x_name,
+                    .note = fmt::format("A dot: after the first iteration with fewer than {} new triangles.",
+                                        kExampleThreshold),
+                    .x = x_name,
+                    .y = "triangles",
+                    .log_x = true,
+                    .log_y = true};
+  for (size_t i = 0; i < curves.size(); ++i) {
+    if (curves[i].empty()) continue;
+    ChartSeries line{.name = report.cells[i].cell.name, .color = uint32_t(i)};
+    ChartSeries dot{.name = fmt::format("{}, T = {}", line.name, kExampleThreshold),
+                    .dots = true,
+                    .in_legend = false,
+                    .color = uint32_t(i)};
+    for (const CurvePoint& point : curves[i]) line.points.push_back({x(point), double(point.size)});
+    uint32_t before = 0;
+    for (const CurvePoint& end : iterationEnds(curves[i])) {
+      if (end.size - before < kExampleThreshold && dot.points.empty())
+        dot.points.push_back({x(end), double(end.size)});
+      before = end.size;
+    }
+    chart.series.push_back(line);
+    if (!dot.points.empty()) chart.series.push_back(dot);
+  }
+  return chart;
+}
+
+/// What each stage has done so far, over all rays. counts: member of CurvePoint.
+ReportChart stageChart(const std::string& title, const std::string& y, const Curve& curve,
+                       std::array<uint64_t, 3> CurvePoint::*counts) {
+  ReportChart chart{.title = title, .x = "rays", .y = y, .log_x = true, .log_y = true};
+  for (uint32_t stage = 0; stage < 3; ++stage) {
+    ChartSeries line{.name = stageName(stage), .color = kStageColors[stage]};
+    for (const CurvePoint& p : curve) line.points.push_back({double(raysOf(p)), double((p.*counts)[stage])});
+    if (!curve.empty() && (curve.back().*counts)[stage] > 0) chart.series.push_back(line);
+  }
+  return chart;
+}
+
+std::string shareText(double share) {
+  return fmt::format("{:.2f} %", 100 * share);
+}
+
+ReportTable cellsTable(const BakeReport& report) {
+  ReportTable table{.columns = {"cell", "triangles", "of the scene", "rays", "Mrays/s", "iterations",
+                                "by random", "by border", "by reverse", "contained", "missing rays at most",
+                                "seconds", "ended by"}};
+  for (const CellSummary& cell : report.cells) {
+    const CellStats& s = cell.stats;
+    const double share =
+        report.scene.triangles == 0 ? 0 : double(cell.pvs_size) / double(report.scene.triangles);
+    table.rows.push_back(
+        {cell.cell.name, std::to_string(cell.pvs_size), shareText(share), shortCount(cell.rays()),
+         fmt::format("{:.2f}", cell.mraysPerSecond()), std::to_string(s.iterations),
+         std::to_string(s.random.new_triangles), std::to_string(s.border.new_triangles),
+         std::to_string(s.reverse.new_triangles), std::to_string(s.contained_triangles),
+         s.validation_rays == 0 ? "not measured" : fmt::format("{:.2g}", cell.missingBound()),
+         fmt::format("{:.2f}", s.seconds), stopReasonName(s.stop)});
+  }
+  return table;
+}
+
+std::vector<ReportFact> parameterFacts(const BakeParams& p) {
+  const auto limit = [](auto value) { return value == 0 ? std::string("none") : fmt::format("{}", value); };
+  return {{"method", methodName(p.method)},
+          {"random rays an iteration", std::to_string(p.n_rand)},
+          {"border samples an edge", std::to_string(p.n_abs_edge)},
+          {"reverse samples an edge", std::to_string(p.n_rs_edge)},
+          {"reverse samples on faces", std::to_string(p.n_rs_area)},
+          {"border distance", fmt::format("{:g} + {:g} of distance", p.delta_abs, p.delta_abs_relative)},
+          {"discontinuity", fmt::format("{:g} + {:g} of distance", p.delta_rs, p.delta_rs_relative)},
+          {"T", std::to_string(p.threshold)},
+          {"quiet iterations", std::to_string(p.quiet_iterations)},
+          {"most rays a cell", limit(p.max_rays)},
+          {"most seconds a cell", limit(p.max_seconds)},
+          {"rays of a batch", std::to_string(p.batch_rays)},
+          {"validation rays", std::to_string(p.validation_rays)},
+          {"seed", std::to_string(p.seed)}};
+}
+
+std::vector<ReportFact> sceneFacts(const BakeReport& report) {
+  const SceneSummary& scene = report.scene;
+  std::vector<ReportFact> facts = {{"triangles", std::to_string(scene.triangles)},
+                                   {"vertices", std::to_string(scene.vertices)},
+                                   {"objects", std::to_string(scene.objects)},
+                                   {"hash of the scene", hashText(scene.hash)},
+                                   {"hash of all sets", hashText(hashResult(report.cells))}};
+  const std::string warning = materialWarning(scene);
+  if (!warning.empty()) facts.push_back({"note", warning});
+  return facts;
+}
+
+void addGrowth(HtmlReport& html, const BakeReport& report, const std::vector<Curve>& curves) {
+  size_t recorded = 0;
+  for (const Curve& curve : curves) recorded += curve.empty() ? 0 : 1;
+  html.section("How the sets grew");
+  if (recorded < report.cells.size()) {
+    html.text(fmt::format("{} of {} cells were baked by an earlier run, which left no curve.",
+                          report.cells.size() - recorded, report.cells.size()));
+  }
+  if (recorded == 0) return;
+  html.charts({sizeChart(report, curves, "rays", [](const CurvePoint& p) { return double(raysOf(p)); }),
+               sizeChart(report, curves, "seconds", [](const CurvePoint& p) { return p.seconds; })});
+  html.section("Stage by stage");
+  html.text("Rays that each stage has traced, and triangles that it has found, over the rays of all stages.");
+  std::vector<ReportChart> charts;
+  for (size_t i = 0; i < curves.size() && charts.size() < 2 * kStageCharts; ++i) {
+    if (curves[i].empty()) continue;
+    const std::string& name = report.cells[i].cell.name;
+    charts.push_back(stageChart(name + ": rays by stage", "rays of the stage", curves[i], &CurvePoint::rays));
+    charts.push_back(
+        stageChart(name + ": new triangles by stage", "triangles", curves[i], &CurvePoint::new_triangles));
+  }
+  if (charts.size() / 2 < recorded) html.text(fmt::format("The first {} cells are drawn.", kStageCharts));
+  html.charts(charts);
+}
+
+}  // namespace
+
+HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
+  HtmlReport html("Bake of " + report.scene.name);
+  html.text(fmt::format("Which of {} triangles can be seen from {} of {} view cells, by {} on {}.",
+                        report.scene.triangles, report.cells.size(), report.planned_cells,
+                        methodName(report.params.method), report.baked_on));
+  html.section("Cells");
+  html.table(cellsTable(report));
+  html.text(
+      "Missing rays, at most: upper end of the 95 % interval of the share of fresh random rays that hit a "
+      "triangle outside the set.");
+  addGrowth(html, report, page.curves);
+  if (!page.pictures.empty()) {
+    html.section("Pictures");
+    html.text(
+        "From outside: triangles in the set green, the view cell orange. From inside: what is seen but "
+        "missing "
+        "in the set red.");
+    html.pictures(page.pictures);
+  }
+  html.section("Parameters");
+  html.facts(parameterFacts(report.params));
+  html.section("Scene");
+  html.facts(sceneFacts(report));
+  html.repeat({.command = page.command,
+               .seed = std::to_string(report.params.seed),
+               .device = report.device ? report.device->id + ", " + report.device->name : report.baked_on,
+               .driver = report.device ? report.device->driver : "",
+               .version = report.version});
+  return html;
+}
+
+std::string curvesCsv(const BakeReport& report, const std::vector<Curve>& curves) {
+  Csv csv({"cell", "iteration", "seconds", "random_rays", "border_rays", "reverse_rays", "random_new",
+           "border_new", "reverse_new", "triangles"});
+  for (size_t i = 0; i < curves.size(); ++i) {
+    for (const CurvePoint& p : curves[i]) {
+      std::vector<std::string> row = {report.cells[i].cell.name, std::to_string(p.iteration),
+                                      fmt::format("{}", p.seconds)};
+      for (const uint64_t rays : p.rays) row.push_back(std::to_string(rays));
+      for (const uint64_t found : p.new_triangles) row.push_back(std::to_string(found));
+      row.push_back(std::to_string(p.size));
+      csv.row(row);
+    }
+  }
+  return csv.text();
+}
+
+}  // namespace sightline

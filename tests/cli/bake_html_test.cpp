@@ -1,0 +1,83 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/cli/run_program.h"
+#include "tests/support/temporary_folder.h"
+
+namespace sightline {
+namespace {
+
+using nlohmann::json;
+using test::ProgramRun;
+using test::runProgram;
+
+std::string textOf(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A small city and one cell in it with a name that must be escaped.
+class BakeHtml : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(runProgram("scene city --triangles 2000 -o " + path("city.glb")).exit_code, 0);
+    std::ofstream(folder_ / "cells.json")
+        << R"({"cells":[{"name":"</script><b>\"x\", y","center":[0,30,0],"size":[4,2,4]}]})";
+  }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string bake(const std::string& more) const {
+    return "bake " + path("city.glb") + " --cells " + path("cells.json") + " -o " + path("city.pvs") +
+           " --device cpu --overwrite --n-rand 20000 --n-abs-edge 4 --n-rs-edge 4 --n-rs-area 4 "
+           "--validation-rays 1000 " +
+           more;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(BakeHtml, WritesPageCsvAndJsonThatAgree) {
+  const ProgramRun run = runProgram(bake("--html " + path("r.html") + " --csv " + path("r.csv") +
+                                         " --report " + path("r.json") + " --pictures " + path("pictures")));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  const std::string html = textOf(folder_ / "r.html");
+  EXPECT_NE(html.find("&lt;/script&gt;&lt;b&gt;&quot;x&quot;, y"), std::string::npos);
+  EXPECT_EQ(html.find("<b>\"x"), std::string::npos);
+  EXPECT_NE(html.find("<pre>sightline bake "), std::string::npos);
+  const json cell = json::parse(textOf(folder_ / "r.json"))["cells"][0];
+  EXPECT_NE(html.find(fmt::format("<td>{}</td>", cell["pvs_size"].dump())), std::string::npos);
+  size_t pictures = 0;
+  for (size_t at = 0; (at = html.find("src=\"data:image/png;base64,iVBOR", at)) != std::string::npos; ++at)
+    ++pictures;
+  EXPECT_EQ(pictures, 2u);
+
+  std::istringstream csv(textOf(folder_ / "r.csv"));
+  std::string line, last;
+  while (std::getline(csv, line)) last = line;
+  const json& stages = cell["stages"];
+  const std::string begin = fmt::format(R"("</script><b>""x"", y",{},)", cell["iterations"].dump());
+  EXPECT_TRUE(last.starts_with(begin)) << last;
+  std::string sums;
+  for (const char* key : {"rays", "new_triangles"}) {
+    for (const char* stage : {"random", "border", "reverse"})
+      sums += fmt::format(",{}", stages[stage][key].dump());
+  }
+  EXPECT_TRUE(last.ends_with(fmt::format("{},{}", sums, cell["pvs_size"].dump()))) << last << " and " << sums;
+}
+
+TEST_F(BakeHtml, RefusesToReplaceItsInputsAndWhatCannotBeWritten) {
+  ProgramRun run = runProgram(bake("--html " + path("city.glb")));
+  EXPECT_EQ(run.exit_code, 2) << run.output;
+  run = runProgram(bake("--csv " + path("city.pvs")));
+  EXPECT_EQ(run.exit_code, 2) << run.output;
+  run = runProgram(bake("--html " + path("no/such/folder.html")));
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "city.pvs")) << "it said so before the work";
+}
+
+}  // namespace
+}  // namespace sightline

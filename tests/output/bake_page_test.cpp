@@ -1,0 +1,84 @@
+#include "core/report/bake_page.h"
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+
+#include "tests/output/example_pvs.h"
+#include "tests/support/example_page.h"
+
+namespace sightline {
+namespace {
+
+using testing_support::kHostileName;
+
+BakeReport exampleReport() {
+  BakeReport report;
+  report.version = "1.2.3";
+  report.scene.name = "room-" + kHostileName + ".obj";
+  report.scene.triangles = 1000;
+  report.baked_on = "cpu";
+  report.cells = summarize(examplePvs());
+  report.cells[1].cell.name = kHostileName + ",\n\"";
+  report.planned_cells = 3;
+  return report;
+}
+
+/// Two batches an iteration; the second iteration finds 9 triangles, the third 1.
+std::vector<CurvePoint> exampleCurve() {
+  return {{0.25, {1000, 0, 0}, {100, 0, 0}, 100, 1},
+          {0.5, {1000, 500, 0}, {100, 50, 0}, 150, 1},
+          {0.75, {2000, 500, 0}, {105, 50, 0}, 155, 2},
+          {1.0, {2000, 600, 0}, {105, 54, 0}, 159, 2},
+          {1.25, {3000, 600, 0}, {106, 54, 0}, 160, 3}};
+}
+
+std::string between(const std::string& text, const std::string& begin, const std::string& end) {
+  const size_t at = text.find(begin);
+  if (at == std::string::npos) return "no " + begin;
+  return text.substr(at, text.find(end, at) - at);
+}
+
+TEST(BakePage, DrawsTheCurvesAndWhereTenWouldStop) {
+  BakePage page;
+  page.curves = {exampleCurve(), {}};
+  const std::string html = bakePage(exampleReport(), page).html();
+  const std::string rays = between(html, "<b>Set size over rays</b>", "</figure>");
+  EXPECT_NE(rays.find("<tr><td>1000</td><td>100</td></tr>\n<tr><td>1500</td><td>150</td></tr>\n"
+                      "<tr><td>2500</td><td>155</td></tr>\n<tr><td>2600</td><td>159</td></tr>\n"
+                      "<tr><td>3600</td><td>160</td></tr>\n</tbody>"),
+            std::string::npos)
+      << rays;
+  EXPECT_NE(rays.find("a, T = 10</th></tr>\n<tr><td>2600</td><td>159</td></tr>\n</tbody>"), std::string::npos)
+      << rays;
+  const std::string seconds = between(html, "<b>Set size over seconds</b>", "</figure>");
+  EXPECT_NE(seconds.find("<tr><td>1.25</td><td>160</td></tr>"), std::string::npos) << seconds;
+  const std::string stages = between(html, "<b>a: new triangles by stage</b>", "</figure>");
+  EXPECT_NE(stages.find(">border<"), std::string::npos);
+  EXPECT_EQ(stages.find(">reverse<"), std::string::npos) << "it found nothing";
+  EXPECT_NE(html.find("1 of 2 cells were baked by an earlier run"), std::string::npos);
+}
+
+TEST(BakePage, WithoutCurvesItStillHasItsTable) {
+  BakePage page;
+  page.curves.resize(2);
+  const std::string html = bakePage(exampleReport(), page).html();
+  EXPECT_EQ(html.find("<canvas"), std::string::npos);
+  EXPECT_NE(html.find("ray limit"), std::string::npos);
+}
+
+TEST(BakePage, NoNameBreaksIt) {
+  BakePage page;
+  page.curves = {exampleCurve(), exampleCurve()};
+  page.command = kHostileName;
+  const std::string html = bakePage(exampleReport(), page).html();
+  EXPECT_EQ(html.find(kHostileName), std::string::npos);
+  const std::string csv = curvesCsv(exampleReport(), page.curves);
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "cell,iteration,seconds,random_rays,border_rays,reverse_rays,random_new,border_new,reverse_new,"
+            "triangles");
+  EXPECT_NE(csv.find("\na,2,1,2000,600,0,105,54,0,159\n"), std::string::npos) << csv;
+}
+
+}  // namespace
+}  // namespace sightline
