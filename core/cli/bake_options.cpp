@@ -5,24 +5,14 @@
 #include <limits>
 #include <map>
 
+#include "core/cli/device_check.h"
 #include "core/cli/number_checks.h"
-#include "core/device/device.h"
 #include "core/gvs/thesis_params.h"
 
 namespace sightline {
 namespace {
 
 constexpr const char* kParamsGroup = "Parameters (they decide the result)";
-
-/// Whether makeDevice may know the name: said before the scene is loaded.
-CLI::Validator deviceName() {
-  return CLI::Validator(
-      [](std::string& name) {
-        if (isDeviceName(name)) return std::string();
-        return "no device \"" + name + "\"; sightline devices lists what can run here";
-      },
-      "");
-}
 
 /// The methods that work.
 const std::vector<std::string> kMethods = {"gvs++", "random"};

@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <chrono>
 #include <filesystem>
 #include <memory>
 
@@ -13,7 +12,7 @@
 #include "core/crosscheck/place.h"
 #include "core/crosscheck/pvs_difference.h"
 #include "core/error.h"
-#include "core/report/progress.h"
+#include "core/report/status_line.h"
 #include "core/report/text.h"
 #include "core/scene/file_io.h"
 
@@ -28,27 +27,6 @@ struct CrosscheckCommand {
   CrosscheckLimits limits;
   bool repair = false, spatial_splits = false, pvs = false;
   uint32_t n_rand = 1'000'000;
-};
-
-/// Rewrites one line on a terminal; elsewhere says one every few seconds.
-class Progress {
- public:
-  void show(RayKind kind, uint64_t done, uint64_t due) {
-    const auto now = std::chrono::steady_clock::now();
-    if (now < next_) return;
-    next_ = now + std::chrono::milliseconds(terminal_ ? 100 : 5000);
-    const std::string line =
-        fmt::format("{:<10}  {} of {} rays", rayKindName(kind), shortCount(done), shortCount(due));
-    std::fputs((terminal_ ? "\r" + line + "\x1b[K" : line + "\n").c_str(), stdout);
-    std::fflush(stdout);
-  }
-  void end() {
-    if (terminal_) std::fputs("\r\x1b[K", stdout);
-  }
-
- private:
-  bool terminal_ = terminalColumns(stdout) > 0;
-  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
 };
 
 /// Bakes every cell on the first device and on each other one, says and returns how the sets differ.
@@ -97,11 +75,16 @@ void run(const CrosscheckCommand& command) {
   fmt::print("\n");
 
   StopSignal stop;
-  Progress progress;
+  StatusLine status;
   const CrosscheckReport report = crosscheck(
       scene, bvh, cells, pointers, command.options,
-      [&](RayKind kind, uint64_t done, uint64_t due) { progress.show(kind, done, due); }, stop.flag());
-  progress.end();
+      [&](RayKind kind, uint64_t done, uint64_t due) {
+        status.show([&] {
+          return fmt::format("{:<10}  {} of {} rays", rayKindName(kind), shortCount(done), shortCount(due));
+        });
+      },
+      stop.flag());
+  status.end();
   std::fputs(crosscheckTable(report).c_str(), stdout);
   fmt::print("traced in {}, judged in {}\n", shortDuration(report.trace_seconds),
              shortDuration(report.judge_seconds));

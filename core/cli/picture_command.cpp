@@ -110,7 +110,9 @@ void addPictureCommand(CLI::App& app) {
                    "outside: leave out what is above this height (auto: a ceiling; none)")
       ->type_name("Y")
       ->capture_default_str();
-  command->add_option("--device", options->device, "cpu, opencl or vulkan; the latter two also with :INDEX or :PART-OF-NAME")
+  command
+      ->add_option("--device", options->device,
+                   "cpu, opencl or vulkan; the latter two also with :INDEX or :PART-OF-NAME")
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--repair", options->repair, "load the scene as bake --repair did");

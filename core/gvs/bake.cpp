@@ -14,15 +14,11 @@ void compare(std::vector<std::string>& differences, const char* name, const T& e
   differences.push_back(fmt::format("{} ({} there, {} now)", name, earlier, wanted));
 }
 
-bool sameCell(const ViewCell& a, const ViewCell& b) {
-  return a.name == b.name && a.center == b.center && a.size == b.size && a.rotation == b.rotation;
-}
-
 void compareCells(std::vector<std::string>& differences, const std::vector<ViewCell>& earlier,
                   const std::vector<ViewCell>& wanted) {
   compare(differences, "number of cells", earlier.size(), wanted.size());
   for (size_t i = 0; i < std::min(earlier.size(), wanted.size()); ++i) {
-    if (sameCell(earlier[i], wanted[i])) continue;
+    if (earlier[i] == wanted[i]) continue;
     differences.push_back(fmt::format("cell {} ({} there, {} now{})", i, earlier[i].name, wanted[i].name,
                                       earlier[i].name == wanted[i].name ? ", of another shape" : ""));
     return;

@@ -3,19 +3,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/report/cell_overlay.h"
+#include "core/report/mark_pixels.h"
 #include "core/report/picture.h"
 #include "core/report/shading.h"
 
 namespace sightline {
 namespace {
 
-constexpr Rgb kMissingColor{255, 0, 0};
-constexpr Rgb kRingColor{200, 0, 60};
 constexpr Rgb kGapColor{255, 255, 255};
-constexpr uint32_t kGap = 4;        ///< pixels between the panoramas
-constexpr size_t kMaxRings = 200;   ///< more missing pixels than that are found without help
-constexpr double kRingRadius = 10;  ///< pixels
+constexpr uint32_t kGap = 4;  ///< pixels between the panoramas
 
 /// Where a panorama looks: longitude around up, latitude towards it.
 struct Panorama {
@@ -79,10 +75,6 @@ std::array<Tile, 3> placeTiles(uint32_t width, uint32_t height) {
           Tile{half + kGap / 2, large + kGap, width - half - kGap / 2, height - large - kGap}};
 }
 
-struct Pixel {
-  uint32_t x = 0, y = 0;
-};
-
 class InsideView {
  public:
   InsideView(const TraceRays& trace, const Scene& scene, const CellPvs& pvs, const PictureOptions& options)
@@ -115,8 +107,8 @@ class InsideView {
             kVisibleColor * lightOn(facingNormal(scene_, hits[i].triangle, direction), direction, to_sun, 1);
       }
       picture_.scene_pixels += shows_scene ? 1 : 0;
-      if (missing) missing_.push_back({x, y});
-      picture_.image.at(x, y) = missing ? kMissingColor : encode(sum / float(hits.size()));
+      if (missing) missing_.push_back(size_t(y) * picture_.image.width + x);
+      picture_.image.at(x, y) = encode(sum / float(hits.size()));
     };
     renderTile(trace_, tile, sample_ray, {}, shade);
   }
@@ -126,30 +118,16 @@ class InsideView {
     auto& triangles = picture_.missing_triangles;
     std::sort(triangles.begin(), triangles.end());
     triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-    if (missing_.size() <= kMaxRings) drawRings();
+    markMissing(picture_.image, missing_);
     return std::move(picture_);
   }
 
  private:
-  void drawRings() {
-    std::vector<Pixel> centers;
-    for (const Pixel& pixel : missing_) {
-      const auto near = [&](const Pixel& center) {
-        return std::hypot(double(center.x) - pixel.x, double(center.y) - pixel.y) < kRingRadius * 0.7;
-      };
-      if (std::none_of(centers.begin(), centers.end(), near)) centers.push_back(pixel);
-    }
-    for (const Pixel& center : centers) {
-      drawRing(picture_.image, center.x + 0.5, center.y + 0.5, kRingRadius, 2, kRingColor);
-    }
-    for (const Pixel& pixel : missing_) picture_.image.at(pixel.x, pixel.y) = kMissingColor;
-  }
-
   const TraceRays& trace_;
   const Scene& scene_;
   std::vector<uint8_t> member_;
   Picture picture_;
-  std::vector<Pixel> missing_;
+  std::vector<size_t> missing_;  ///< pixels
 };
 
 }  // namespace

@@ -19,6 +19,8 @@ struct ViewCell {
   /// With size.z == 0 the cell is a rectangle in its local xy plane that looks along local +z only. With
   /// size.x or size.y zero it is a sheet that looks to both sides.
   bool flat() const { return size.z == 0.0; }
+
+  bool operator==(const ViewCell&) const = default;
 };
 
 /// The rectangles from which rays leave: one for a flat cell, else those of the six with an area, in the

@@ -1,0 +1,281 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include "core/cli/commands.h"
+#include "core/cli/device_check.h"
+#include "core/cli/number_checks.h"
+#include "core/cli/stop_signal.h"
+#include "core/error.h"
+#include "core/gvs/bake_cell.h"
+#include "core/measure/measure_report.h"
+#include "core/pvs/choose_cell.h"
+#include "core/pvs/pvs_writer.h"
+#include "core/report/cell_pictures.h"
+#include "core/report/shading.h"
+#include "core/report/status_line.h"
+#include "core/report/text.h"
+#include "core/report/view_picture.h"
+#include "core/scene/file_io.h"
+
+namespace sightline {
+namespace {
+
+struct MeasureCommand {
+  std::filesystem::path scene, report, csv, pictures;
+  std::vector<std::filesystem::path> pvs;
+  std::vector<std::string> cells;
+  std::string device = "opencl";
+  std::optional<uint32_t> views, resolution;
+  MeasureOptions options;
+  double max_average = std::numeric_limits<double>::infinity();
+  double max_wrong = std::numeric_limits<double>::infinity();
+  bool repair = false;
+};
+
+/// How the cells that two files hold differ; empty: not at all.
+std::string cellsDifference(const PvsFile& first, const PvsFile& other) {
+  if (first.cells.size() != other.cells.size()) {
+    return fmt::format("{} cells there, {} here", first.cells.size(), other.cells.size());
+  }
+  for (size_t i = 0; i < first.cells.size(); ++i) {
+    const ViewCell &there = first.cells[i].cell, &here = other.cells[i].cell;
+    if (there.name != here.name) return fmt::format("cell {} is {} there, {} here", i, there.name, here.name);
+    if (there != here) return fmt::format("cell {} has another shape there", there.name);
+  }
+  return {};
+}
+
+/// The files, all of one scene and with the same cells.
+std::vector<PvsFile> loadSets(const MeasureCommand& command, const Scene& scene) {
+  std::vector<PvsFile> sets;
+  for (const std::filesystem::path& file : command.pvs) {
+    sets.push_back(loadFinishedCells(file));
+    requireScene(sets.back(), scene, file);
+    if (sets.back().cells.empty()) {
+      throw Error(fmt::format("{}: holds no finished cell; go on with its bake", file.string()));
+    }
+    const std::string difference = cellsDifference(sets.front(), sets.back());
+    if (difference.empty()) continue;
+    throw Error(fmt::format("{}: holds other cells than {} ({}); measure the files one by one", file.string(),
+                            command.pvs.front().string(), difference));
+  }
+  return sets;
+}
+
+/// Indices of the cells to measure.
+std::vector<uint32_t> cellsToMeasure(const MeasureCommand& command, const PvsFile& pvs) {
+  std::vector<uint32_t> indices;
+  for (const std::string& name : command.cells) {
+    indices.push_back(uint32_t(&chooseCell(pvs, name, command.pvs.front()) - pvs.cells.data()));
+  }
+  for (uint32_t i = 0; command.cells.empty() && i < pvs.cells.size(); ++i) indices.push_back(i);
+  return indices;
+}
+
+/// The defaults that the device can afford.
+void chooseSize(const MeasureCommand& command, MeasureReport& report) {
+  const bool small = report.device.on_cpu;
+  report.options = command.options;
+  report.options.views = command.views.value_or(small ? kViewsOnCpu : report.options.views);
+  report.options.resolution =
+      command.resolution.value_or(small ? kResolutionOnCpu : report.options.resolution);
+  checkOptions(report.options);
+  const bool chosen = !command.views || !command.resolution;
+  fmt::print("{} views of {} x {} pixels a cell{}, field of view {:g} degrees, seed {}\n",
+             report.options.views, report.options.resolution, report.options.resolution,
+             chosen && small ? " (the defaults of a processor)" : "", report.options.fov,
+             report.options.seed);
+}
+
+std::string statusText(const std::string& cell, size_t index, size_t cells, const MeasureProgress& p,
+                       double seconds_before) {
+  const double left = p.seconds / p.views_done * (p.views - p.views_done);
+  const double mean = (seconds_before + p.seconds + left) / double(index + 1);
+  return fmt::format("{} {}/{}  views {}/{}  {} rays  {:.2f} Mrays/s  left {}, all {}", cell, index + 1,
+                     cells, p.views_done, p.views, shortCount(p.rays), double(p.rays) / p.seconds * 1e-6,
+                     shortDuration(left), shortDuration(left + mean * double(cells - index - 1)));
+}
+
+/// Draws a cell's worst views of one set. Returns the files' names.
+std::vector<std::string> drawWorst(const MeasureCommand& command, const Scene& scene, Device& device,
+                                   const MeasureOptions& options, const CellPvs& pvs, uint32_t cell,
+                                   size_t set, std::span<const uint32_t> views) {
+  const std::vector<uint8_t> member = membership(scene, pvs.triangles);
+  const auto frames = measureViews(pvs.cell, cell, options.views, options.seed, options.fov);
+  std::vector<uint32_t> triangles(size_t(options.resolution) * options.resolution);
+  std::vector<std::string> names;
+  for (const uint32_t view : views) {
+    const std::string of_set = command.pvs.size() == 1 ? "" : fmt::format("-{}", set);
+    names.push_back(fmt::format("{}{}-view-{}.png", pictureName(pvs.cell.name, cell), of_set, view));
+    device.traceViews(std::span(frames).subspan(view, 1), options.resolution, triangles);
+    savePng(viewPicture(scene, frames[view], options.resolution, triangles, member),
+            command.pictures / names.back());
+  }
+  return names;
+}
+
+/// One cell of all files.
+void measureOne(const MeasureCommand& command, const Scene& scene, Device& device,
+                const std::vector<PvsFile>& files, uint32_t cell, const MeasureCallback& progress,
+                const std::atomic<bool>* stop, MeasureReport& report) {
+  std::vector<RankedSet> sets;
+  for (const PvsFile& file : files) {
+    sets.push_back(rankedSet(file.cells[cell].triangles, uint32_t(scene.triangles.size())));
+  }
+  const ViewCell& view_cell = files.front().cells[cell].cell;
+  const auto errors = measureCell(device, view_cell, cell, sets, report.options, progress, stop);
+  report.rays += errors.front().by_prefix.front().pixels;
+  for (size_t s = 0; s < files.size(); ++s) {
+    const CellPvs& pvs = files[s].cells[cell];
+    MeasuredCell measured{
+        view_cell.name, pvs.triangles.size(), errors[s].by_prefix.front(), errors[s].worst_views, {}};
+    if (!command.pictures.empty()) {
+      measured.pictures =
+          drawWorst(command, scene, device, report.options, pvs, cell, s, measured.worst_views);
+    }
+    report.sets[s].cells.push_back(std::move(measured));
+  }
+}
+
+void measureAll(const MeasureCommand& command, const Scene& scene, Device& device,
+                const std::vector<PvsFile>& files, std::span<const uint32_t> cells, const StopSignal& stop,
+                MeasureReport& report) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  StatusLine status;
+  try {
+    for (size_t i = 0; i < cells.size(); ++i) {
+      const double before = seconds();
+      const auto show = [&](const MeasureProgress& p) {
+        status.show(
+            [&] { return statusText(files.front().cells[cells[i]].cell.name, i, cells.size(), p, before); });
+      };
+      measureOne(command, scene, device, files, cells[i], show, stop.flag(), report);
+    }
+  } catch (const Interrupted&) {
+    report.complete = false;
+  }
+  status.end();
+  report.seconds = seconds();
+}
+
+void save(const std::filesystem::path& path, const std::string& text) {
+  if (path.empty()) return;
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+void run(const MeasureCommand& command) {
+  checkOptions(command.options);
+  std::vector<std::filesystem::path> inputs = command.pvs;
+  inputs.push_back(command.scene);
+  requireSeparate(std::array{command.report, command.csv}, inputs);
+  for (const auto& output : {command.report, command.csv}) {
+    if (!output.empty()) OutputFile probe(output);  // fail before the work, not after it
+  }
+  if (!command.pictures.empty()) makeFolder(command.pictures);
+  const Scene scene = loadScene(command.scene, {.repair = command.repair});
+  const std::vector<PvsFile> files = loadSets(command, scene);
+  const std::vector<uint32_t> cells = cellsToMeasure(command, files.front());
+  requireDevice(command.device);
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const std::unique_ptr<Device> device = makeDevice(command.device, scene, bvh);
+
+  MeasureReport report;
+  report.version = SL_VERSION;
+  report.scene = summarize(scene, command.scene.filename().string(), files.front().scene_hash);
+  report.device = device->info();
+  for (size_t s = 0; s < files.size(); ++s) {
+    report.sets.push_back({command.pvs[s].string(), files[s].device, files[s].params, {}});
+  }
+  fmt::print("{}: {} triangles; {}, {}\n", command.scene.string(), scene.triangles.size(), report.device.id,
+             report.device.name);
+  chooseSize(command, report);
+  StopSignal stop;
+  measureAll(command, scene, *device, files, cells, stop, report);
+  std::fputs(measureTable(report).c_str(), stdout);
+  fmt::print("{} rays in {}\n", shortCount(report.rays), shortDuration(report.seconds));
+  save(command.report, jsonText(measureJson(report)));
+  save(command.csv, measureCsv(report));
+  if (stop.exitCode() != 0) throw ExitCode{stop.exitCode()};
+  const auto past = pastLimits(report, command.max_average, command.max_wrong);
+  for (const std::string& line : past) fmt::print("past the limit: {}\n", line);
+  if (!past.empty()) throw ExitCode{kExitPastLimit};
+}
+
+void declareFiles(CLI::App& command, MeasureCommand& options) {
+  command.add_option("scene", options.scene, "the scene that was baked")->required()->type_name("SCENE");
+  command.add_option("pvs", options.pvs, "made by bake; several of the same cells are measured in one pass")
+      ->required()
+      ->type_name("OUT.pvs");
+  command.add_option("--cell", options.cells, "measure only this cell, by name or index (default: all)")
+      ->allow_extra_args(false)
+      ->type_name("NAME|INDEX");
+  command.add_option("--device", options.device, "as of bake")
+      ->check(deviceName())
+      ->type_name("NAME")
+      ->capture_default_str();
+  command
+      .add_option("--pictures", options.pictures,
+                  "draw the worst views, at most three a cell and file: scene grey, wrong pixels red")
+      ->type_name("DIR");
+  command.add_option("--report", options.report, "write what was found as JSON (docs/report.md)")
+      ->type_name("R.json");
+  command.add_option("--csv", options.csv, "write it as CSV, a line a cell and file")->type_name("R.csv");
+  command.add_flag("--repair", options.repair, "load the scene as bake --repair did");
+}
+
+void declareViews(CLI::App& command, MeasureCommand& options) {
+  command
+      .add_option("--views", options.views,
+                  fmt::format("views of each cell (default: {}; where a processor traces, {})",
+                              options.options.views, kViewsOnCpu))
+      ->check(between(1, 1e7))
+      ->type_name("N");
+  command
+      .add_option("--resolution", options.resolution,
+                  fmt::format("pixels along each side of a view (default: {}; where a processor traces, {})",
+                              options.options.resolution, kResolutionOnCpu))
+      ->check(between(1, kMaxViewResolution))
+      ->type_name("N");
+  command.add_option("--fov", options.options.fov, "field of view, degrees")
+      ->check(between(kSmallestFov, kLargestFov))
+      ->type_name("DEGREES")
+      ->capture_default_str();
+  command.add_option("--seed", options.options.seed, "seed of the views")
+      ->check(wholeNumber())
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option("--max-average", options.max_average, "wrong pixels a view, on average over a cell's views")
+      ->check(between(0, 1e18))
+      ->type_name("X")
+      ->group("Limits of any one cell and file (else exit code 3)");
+  command.add_option("--max-wrong", options.max_wrong, "wrong pixels in any one view")
+      ->check(between(0, 1e18))
+      ->type_name("N")
+      ->group("Limits of any one cell and file (else exit code 3)");
+}
+
+}  // namespace
+
+void addMeasureCommand(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "measure", "Measure the pixel error: how much of what a cell sees is missing from its set");
+  const auto options = std::make_shared<MeasureCommand>();
+  declareFiles(*command, *options);
+  declareViews(*command, *options);
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace sightline
