@@ -4,6 +4,7 @@
 #define SL_SAMPLING_STATE_CL
 #include "cl_kernels/trace.cl"
 #include "core/shared/border.h"
+#include "core/shared/gvs_reverse.h"
 #include "core/shared/random_ray.h"
 #include "core/shared/reverse.h"
 #include "core/shared/set.h"
@@ -82,7 +83,22 @@ static inline Ray walkToBorderRay(BorderWalk* walk, SceneRef scene, BorderSource
   return borderRay(walk->edge, k, walk->origin, params);
 }
 
+/// The same of the original method: `index` is a position of an entry's polygon.
+static inline Ray gvsRayAt(SceneRef scene, BorderSource source, StageParams params, uint index) {
+  const uint entry_index = index / kGvsPositions;
+  const uint position = index - entry_index * kGvsPositions;
+  const uint4 entry = source.entries[source.first + entry_index].origin_triangle;
+  const Corners t = triangleCorners(scene, source.record_of, entry.w);
+  const float3 origin = as_float4(entry).xyz;
+  const float3 from = gvsVertex(t.a, t.b, t.c, gvsFirstVertex(position), origin, params);
+  if (position % 8 == 0) return rayTo(origin, from);
+  const float3 to = gvsVertex(t.a, t.b, t.c, gvsSecondVertex(position), origin, params);
+  return rayTo(origin, gvsPoint(from, to, position));
+}
+
+/// Border ray `index` (0 ..) of the source, by the method of the parameters.
 static inline Ray borderRayAt(SceneRef scene, BorderSource source, StageParams params, uint index) {
+  if (isGvs(params)) return gvsRayAt(scene, source, params, index);
   BorderWalk walk = startBorderWalk();
   return walkToBorderRay(&walk, scene, source, params, index);
 }
@@ -116,6 +132,14 @@ static inline ReverseItem reverseItemAt(SceneRef scene, ReverseSource source, __
     item.b.xyz = corners.b;
     item.c.xyz = corners.c;
   }
+  if (isGvs(params)) {
+    const PvsEntry entry = source.border.entries[source.border.first + border_index / kGvsPositions];
+    const Corners t = triangleCorners(scene, source.border.record_of, entry.origin_triangle.w);
+    Ray found;
+    found.origin = (float4)(as_float4(entry.origin_triangle).xyz, 0);
+    found.direction = (float4)(as_float4(entry.direction_stage).xyz, 0);
+    item = gvsReverseItem(item, found, t.a, t.b, t.c, params);
+  }
   return item;
 }
 
@@ -142,6 +166,13 @@ static inline Ray walkToReverseRay(ReverseWalk* walk, SceneRef scene, ReverseSou
     walk->item = reverseItemAt(scene, source, faces, params, place);
   }
   if (walk->item.number.z == 0) return noRay();
+  if (isGvs(params)) {
+    Ray ray = noRay();
+    for (uint f = 0; f < params.counts.w && !hasDirection(ray); ++f) {
+      ray = gvsReverseRay(walk->item, faces[f], k);
+    }
+    return ray;
+  }
   return reverseRay(walk->item, faces[reverseFace(walk->item, k)], k, params);
 }
 

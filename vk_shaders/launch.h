@@ -38,7 +38,7 @@ SL_STRUCT(VulkanLaunch) {
   uint64 segments;         ///< RandomSegment[] of the batch
   uint64 border_edges;     ///< BorderEdge[], three an entry of the border launch
   uint64 reverse_items;    ///< ReverseItem[] of the reverse launch
-  uint64 border_hits;      ///< uint[] a border ray: leaf that it hit, or kNoTriangle
+  uint64 border_hits;      ///< uint[] a border ray: leaf that it hit, kNoTriangle or kNotTraced
   uint64 bits;             ///< a bit a border ray: it met a discontinuity
   uint64 discontinuities;  ///< uint[]: indices of border rays
   uint64 rays;             ///< Ray[] that trace_rays reads, stage_rays writes; ViewFrame[] of trace_views
@@ -60,6 +60,8 @@ SL_STRUCT(VulkanLaunch) {
   uint word_count;
   uint block_count;
   uint resolution;  ///< of the images of trace_views
+  uint level;       ///< of trace_gvs_border
+  uint padding;     ///< to a multiple of 8 bytes
 };
 
 SL_NAMESPACE_END

@@ -3,6 +3,7 @@
 #define SL_SAMPLING_GLSL
 #include "vk_shaders/state.glsl"
 #include "core/shared/border.h"
+#include "core/shared/gvs_reverse.h"
 #include "core/shared/random_ray.h"
 #include "core/shared/reverse.h"
 
@@ -19,7 +20,13 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ReverseItem
   ReverseItem at[];
 };
 
-/// Origin of the border rays of an entry.
+/// The leaf of the launch's entry `entry_index`.
+uint borderLeaf(uint entry_index) {
+  uint triangle = Entries(SL_LAUNCH.entries).at[SL_LAUNCH.border_first + entry_index].origin_triangle.w;
+  return Words(SL_LAUNCH.leaf_of).at[triangle];
+}
+
+/// Origin of the border rays of an entry, or another vector by its bits.
 vec3 borderOrigin(uvec4 entry) {
   return vec3(uintBitsToFloat(entry.x), uintBitsToFloat(entry.y), uintBitsToFloat(entry.z));
 }
@@ -32,6 +39,11 @@ BorderEdge borderEdgeAt(uint entry_index, uint side) {
                     borderOrigin(entry), SL_LAUNCH.params);
 }
 
+/// Vertex 0 .. 8 of the border polygon of the launch's entry. Needs what border_edges wrote.
+vec3 borderVertexAt(uint entry_index, uint vertex) {
+  return gvsVertexOf(BorderEdges(SL_LAUNCH.border_edges).at[3u * entry_index + vertex / 3u], vertex);
+}
+
 /// Border ray `index` (0 ..) of the last border launch. Needs what border_edges wrote.
 Ray borderRayAt(uint index) {
   StageParams params = SL_LAUNCH.params;
@@ -39,8 +51,23 @@ Ray borderRayAt(uint index) {
   uint entry_index = index / per_entry;
   uint k = index - entry_index * per_entry;
   uvec4 entry = Entries(SL_LAUNCH.entries).at[SL_LAUNCH.border_first + entry_index].origin_triangle;
+  if (isGvs(params)) {
+    vec3 first = borderVertexAt(entry_index, gvsFirstVertex(k));
+    return rayTo(borderOrigin(entry), gvsPoint(first, borderVertexAt(entry_index, gvsSecondVertex(k)), k));
+  }
   BorderEdge edge = BorderEdges(SL_LAUNCH.border_edges).at[3u * entry_index + borderSide(k, params)];
   return borderRay(edge, k, borderOrigin(entry), params);
+}
+
+/// The original method's item of a discontinuity of the launch's entry.
+ReverseItem gvsReverseItemAt(ReverseItem item, uint entry_index) {
+  PvsEntry entry = Entries(SL_LAUNCH.entries).at[SL_LAUNCH.border_first + entry_index];
+  uint leaf = borderLeaf(entry_index);
+  Ray ray;
+  ray.origin = vec4(borderOrigin(entry.origin_triangle), 0.0f);
+  ray.direction = vec4(borderOrigin(entry.direction_stage), 0.0f);
+  return gvsReverseItem(item, ray, leafCorner(leaf, 0u), leafCorner(leaf, 1u), leafCorner(leaf, 2u),
+                        SL_LAUNCH.params);
 }
 
 /// Discontinuity `place` (0 ..) of the last border launch: for reverse_items.
@@ -61,7 +88,7 @@ ReverseItem reverseItemAt(uint place) {
   item.a = occluded ? vec4(leafCorner(occluder, 0u), 0.0f) : vec4(0.0f);
   item.b = occluded ? vec4(leafCorner(occluder, 1u), 0.0f) : vec4(0.0f);
   item.c = occluded ? vec4(leafCorner(occluder, 2u), 0.0f) : vec4(0.0f);
-  return item;
+  return isGvs(SL_LAUNCH.params) ? gvsReverseItemAt(item, border_index / kGvsPositions) : item;
 }
 
 /// Reverse ray `index` (0 ..) of the reverse launch, or none. Needs what reverse_items wrote.
@@ -72,6 +99,13 @@ Ray reverseRayAt(uint index) {
   uint k = index - place * per_item;
   ReverseItem item = ReverseItems(SL_LAUNCH.reverse_items).at[place];
   if (item.number.z == 0u) return noRay();
+  if (isGvs(params)) {
+    Ray ray = noRay();
+    for (uint f = 0u; f < params.counts.w && !hasDirection(ray); ++f) {
+      ray = gvsReverseRay(item, Faces(SL_LAUNCH.faces).at[f], k);
+    }
+    return ray;
+  }
   return reverseRay(item, Faces(SL_LAUNCH.faces).at[reverseFace(item, k)], k, params);
 }
 

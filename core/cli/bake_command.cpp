@@ -7,6 +7,7 @@
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/stop_signal.h"
+#include "core/device/naive_device.h"
 #include "core/error.h"
 #include "core/gvs/bake.h"
 #include "core/report/bake_page.h"
@@ -73,6 +74,9 @@ void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, 
   say(fmt::format("tree: built in {}, SAH cost {:.1f}, depth {}", shortDuration(report.tree->build_seconds),
                   report.tree->sah_cost, report.tree->depth));
   tracer.device = makeDevice(options.device, scene, tracer.bvh, options.device_options);
+  if (options.params.method == Method::kNaive) {
+    tracer.device = makeNaiveDevice(std::move(tracer.device), scene);
+  }
   report.device = tracer.device->info();
   report.set = tracer.device->counters().hash_set ? "hash" : "array";
   say(fmt::format("device: {}, {}", report.device->id, report.device->name));

@@ -15,14 +15,16 @@ namespace {
 constexpr const char* kParamsGroup = "Parameters (they decide the result)";
 
 /// The methods that work.
-const std::vector<std::string> kMethods = {"gvs++", "random"};
+const std::vector<std::string> kMethods = {"gvs++", "gvs", "random", "naive"};
 
 /// First of the parameters: CLI11 takes options in the order of declaration, so any other wins over --thesis.
 void declareMethod(CLI::App& command, BakeParams& params) {
   command
       .add_option_function<std::string>(
           "--method", [&params](const std::string& name) { params.method = *methodOf(name); },
-          "gvs++: random, border and reverse rays; random: random rays alone")
+          "gvs++; gvs: the original, with fewer border and reverse rays; random: random rays alone; naive: "
+          "gvs++ with the set on "
+          "the host, for comparison")
       ->check(CLI::IsMember(kMethods))
       ->type_name("NAME")
       ->default_str(methodName(params.method))

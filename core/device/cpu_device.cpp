@@ -46,17 +46,21 @@ class CpuDevice final : public Device {
 
   /// Generator of the border rays of the last traceBorder.
   auto borderRays() const {
-    return [this, place = kNoTriangle, edge = BorderEdge{}, origin = vec3(0)](uint32_t number) mutable {
-      const uint32_t per_entry = borderRayCount(params_);
-      const uint32_t entry_index = number / per_entry, k = number % per_entry;
-      const uint32_t side = borderSide(k, params_);
-      if (place != entry_index * 3 + side) {
-        place = entry_index * 3 + side;
-        const PvsEntry& entry = entries_[border_first_ + entry_index];
-        origin = entryOrigin(entry);
-        edge = borderEdgeOf(scene_, entry, side, params_);
-      }
-      return BatchRay{borderRay(edge, k, origin, params_), number + 1};
+    return [rays = BorderRays(scene_, std::span(entries_).subspan(border_first_), params_)](
+               uint32_t number) mutable {
+      return BatchRay{rays(number), number + 1};
+    };
+  }
+
+  /// Generator of one level of the last traceBorder by the original method; positions between samples that
+  /// hit the same have no direction.
+  auto gvsRays(uint32_t level) const {
+    return [this, level, rays = borderRays()](uint32_t slot) mutable {
+      const uint32_t entry = slot / gvsSlots(level) * kGvsPositions;
+      const uint32_t position = gvsPosition(level, slot % gvsSlots(level));
+      const bool divides = level == 0 || gvsDivides(border_hits_[entry + gvsBefore(level, position)],
+                                                    border_hits_[entry + gvsAfter(level, position)]);
+      return divides ? rays(entry + position) : BatchRay{noRay(), 0};
     };
   }
 
@@ -73,11 +77,17 @@ class CpuDevice final : public Device {
     };
   }
 
+  /// Whose border ray it was.
+  const PvsEntry& borderEntry(uint32_t border_index) const {
+    return entries_[border_first_ + border_index / borderRayCount(params_)];
+  }
+
   /// A discontinuity of the last traceBorder.
   ReverseItem reverseItem(uint32_t index) const {
     const uint32_t border_index = discontinuities_[index];
     const Ray border = borderRays()(border_index).ray;
-    return reverseItemOf(scene_, faces_, border, border_hits_[border_index], items_before_ + index);
+    return reverseItemOf(scene_, faces_, borderEntry(border_index), border, border_hits_[border_index],
+                         items_before_ + index, params_);
   }
 
  public:
@@ -118,15 +128,24 @@ class CpuDevice final : public Device {
     items_before_ += discontinuities_.size();
     border_first_ = first;
     const uint64_t total = uint64_t(count) * borderRayCount(params_);
-    border_hits_.assign(total, kNoTriangle);
     is_discontinuity_.assign(total, 0);
-    rays_ += launch(
-        total, [&] { return borderRays(); },
-        [&](const BatchRay& ray, const Hit& hit, SetRef set) {
-          border_hits_[ray.index - 1] = hit.triangle;
-          is_discontinuity_[ray.index - 1] = isDiscontinuity(ray.ray, hit, params_) ? 1 : 0;
-          insertHit(set, hit.triangle, ray.index);
-        });
+    const auto take = [&](const BatchRay& ray, const Hit& hit, SetRef set) {
+      const uint32_t index = ray.index - 1;
+      border_hits_[index] = hit.triangle;
+      is_discontinuity_[index] = isDiscontinuityOf(scene_, borderEntry(index), ray.ray, hit, params_) ? 1 : 0;
+      insertHit(set, hit.triangle, ray.index);
+    };
+    if (isGvs(params_)) {
+      border_hits_.assign(total, kNotTraced);
+      for (uint32_t level = 0; level < kGvsLevels; ++level) {
+        rays_ += launch(
+            uint64_t(count) * gvsSlots(level), [&] { return gvsRays(level); }, take);
+      }
+    } else {
+      border_hits_.assign(total, kNoTriangle);
+      rays_ += launch(
+          total, [&] { return borderRays(); }, take);
+    }
     discontinuities_.clear();
     for (uint32_t index = 0; index < total; ++index) {
       if (is_discontinuity_[index] != 0) discontinuities_.push_back(index);

@@ -8,6 +8,7 @@
 #include "core/device/opencl_set.h"
 #include "core/gvs/random_segment.h"
 #include "core/shared/border.h"
+#include "core/shared/gvs_border.h"
 #include "core/shared/reverse.h"
 
 namespace sightline {
@@ -47,9 +48,11 @@ class OpenClDevice final : public Device {
     set_ = std::make_unique<OpenClSet>(context_, triangle_count_, wantsHash(options));
     const char* names[] = {"traceRandom",     "countMissing", "traceBorder",     "traceReverse",
                            "countBits",       "sumBlocks",    "writeIndices",    "appendEntries",
-                           "insertContained", "copyEntries",  "traceRaysKernel", "traceViewsKernel"};
-    ClKernel* kernels[] = {&random_, &missing_, &border_,    &reverse_, &count_,       &sum_,
-                           &write_,  &append_,  &contained_, &copy_,    &rays_kernel_, &views_kernel_};
+                           "insertContained", "copyEntries",  "traceRaysKernel", "traceViewsKernel",
+                           "traceGvsBorder"};
+    ClKernel* kernels[] = {&random_,      &missing_,      &border_,    &reverse_,   &count_,
+                           &sum_,         &write_,        &append_,    &contained_, &copy_,
+                           &rays_kernel_, &views_kernel_, &gvs_border_};
     for (size_t i = 0; i < std::size(names); ++i) *kernels[i] = context_.kernel(names[i]);
     faces_ = context_.buffer(6 * sizeof(Face), "faces of the view cell");
     counters_ = context_.buffer((kCounters + 1) * 4, "counters");
@@ -82,7 +85,9 @@ class OpenClDevice final : public Device {
     border_hits_.reserve(context_, uint64_t(total) * 4, "hits of border rays");
     bits_.reserve(context_, uint64_t(words) * 4, "bits of discontinuities");
     context_.fill(bits_.buffer, 0, uint64_t(words) * 4);
+    if (isGvs(params_)) context_.fill(border_hits_.buffer, kNotTraced, uint64_t(total) * 4);
     traceUntilItFits([&] {
+      if (isGvs(params_)) return launchGvsLevels(first, count);
       launch(border_, total, record_of_, params_, entries_, first, total, border_hits_.buffer, bits_.buffer,
              counters_);
     });
@@ -199,6 +204,15 @@ class OpenClDevice final : public Device {
                     set_->capacity(), args...);
   }
 
+  /// Border rays of the original method, level after level.
+  void launchGvsLevels(uint32_t first, uint32_t count) {
+    for (uint32_t level = 0; level < kGvsLevels; ++level) {
+      const uint32_t slots = count * gvsSlots(level);
+      launch(gvs_border_, slots, record_of_, params_, entries_, first, level, slots, border_hits_.buffer,
+             bits_.buffer, counters_);
+    }
+  }
+
   bool growIfFull() {
     if (!set_->takeOverflow()) return false;
     set_->grow(4);
@@ -259,7 +273,7 @@ class OpenClDevice final : public Device {
   OpenClScene scene_;
   ClBuffer record_of_, faces_, counters_, entries_;
   ClKernel random_, missing_, border_, reverse_, count_, sum_, write_, append_, contained_, copy_,
-      rays_kernel_, views_kernel_;
+      rays_kernel_, views_kernel_, gvs_border_;
   std::unique_ptr<OpenClSet> set_;
   StageParams params_{};
   std::vector<RandomSegment> segments_;  ///< of the batch

@@ -8,6 +8,7 @@
 #include "core/device/vulkan_set.h"
 #include "core/gvs/random_segment.h"
 #include "core/shared/border.h"
+#include "core/shared/gvs_border.h"
 #include "core/shared/reverse.h"
 
 namespace sightline {
@@ -80,8 +81,9 @@ class VulkanDevice final : public Device {
     reserve(bits_, launch_.bits, uint64_t(words) * 4, "bits of discontinuities");
     runner_.commands.fill(bits_, 0, uint64_t(words) * 4);
     runner_.run(edges_, count * 3);
+    if (isGvs(launch_.params)) runner_.commands.fill(border_hits_, kNotTraced, uint64_t(total) * 4);
     discontinuities_ = traceUntilItFits([&] {
-      runner_.run(tracing(border_, "trace_border"), total);
+      traceBorderRays(count, total);
       countBits(bits_, words);
     });
     writeIndices(discontinuities_, items_, launch_.discontinuities, "list of discontinuities");
@@ -197,6 +199,14 @@ class VulkanDevice final : public Device {
     }
   }
 
+  /// All border rays of `count` entries; of the original method level after level.
+  void traceBorderRays(uint32_t count, uint32_t total) {
+    if (!isGvs(launch_.params)) return runner_.run(tracing(border_, "trace_border"), total);
+    for (launch_.level = 0; launch_.level < kGvsLevels; ++launch_.level) {
+      runner_.run(tracing(gvs_border_, "trace_gvs_border"), count * gvsSlots(launch_.level));
+    }
+  }
+
   /// Makes a buffer larger if needed (contents are lost) and puts its address into the launch.
   void reserve(VulkanBuffer& buffer, uint64& address, uint64_t bytes, const char* what) {
     if (buffer.bytes() < bytes || buffer.get() == VK_NULL_HANDLE) {
@@ -278,7 +288,7 @@ class VulkanDevice final : public Device {
       border_edges_, reverse_items_, rays_buffer_, hits_buffer_, views_, view_triangles_, readback_;
   std::optional<VulkanUpload> upload_;
   VulkanStage count_, sum_, write_, edges_, reverse_list_, append_, contained_;
-  std::optional<VulkanStage> random_, missing_, border_, reverse_, rays_stage_, views_stage_;
+  std::optional<VulkanStage> random_, missing_, border_, reverse_, rays_stage_, views_stage_, gvs_border_;
   std::vector<RandomSegment> segments_;  ///< of the batch
   uint32_t entry_capacity_ = 0;
   uint32_t size_ = 0;             ///< entries of the list

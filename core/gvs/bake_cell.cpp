@@ -67,6 +67,7 @@ class CellBake {
     stage_params_.shifts = haltonShifts(params.seed, cell_index, 0);
     stage_params_.distances =
         vec4(params.delta_abs_relative, params.delta_abs, params.delta_rs_relative, params.delta_rs);
+    stage_params_.method.x = params.method == Method::kGvs ? kSampleGvs : kSampleGvspp;
     device_.beginCell(faces_, stage_params_);
   }
 
@@ -301,8 +302,8 @@ void checkParams(const BakeParams& p) {
   const auto require = [](bool good, const char* line) {
     if (!good) throw Error(line, kExitUsage);
   };
-  require(p.method == Method::kGvspp || p.method == Method::kRandom,
-          "this method is not built in: choose gvs++ or random");
+  require(p.method != Method::kRaster && p.method <= Method::kNaive,
+          "this method is not built in: choose gvs++, gvs, random or naive");
   require(p.target_error == 0, "target-error must be 0");
   require(p.n_rand >= 1 && p.n_rand <= 0xfffffffdu, "n-rand must be 1 .. 4294967293");
   require(p.n_abs_edge <= 1000, "n-abs-edge must be 0 .. 1000");

@@ -21,9 +21,9 @@
 #include "core/shared/stage_params.h"
 SL_NAMESPACE_BEGIN
 
-/// Rays to one border polygon: 3 n_ABSEdge + 9.
+/// Rays to one border polygon: 3 n_ABSEdge + 9; of the original method at most.
 SL_FUNC uint borderRayCount(StageParams params) {
-  return 3u * params.counts.x + 9u;
+  return isGvs(params) ? kGvsPositions : 3u * params.counts.x + 9u;
 }
 
 /// Border distance at corner p for a ray from origin. The relative part grows with the distance and never

@@ -13,9 +13,9 @@
 #include "core/shared/triangle.h"
 SL_NAMESPACE_BEGIN
 
-/// Rays for one discontinuity: 4 n_RSEdge + n_RSArea.
+/// Rays for one discontinuity: 4 n_RSEdge + n_RSArea; 2 of the original method.
 SL_FUNC uint reverseRayCount(StageParams params) {
-  return 4u * params.counts.y + params.counts.z;
+  return isGvs(params) ? 2u : 4u * params.counts.y + params.counts.z;
 }
 
 SL_FUNC bool faceLooksAt(Face face, vec3 target) {
@@ -46,7 +46,7 @@ SL_FUNC vec3 reverseOrigin(Face face, uint64 item, uint k, StageParams params) {
 /// A discontinuity: all that its reverse rays have in common.
 SL_STRUCT(ReverseItem) {
   vec4 target;  ///< xyz
-  vec4 a;       ///< corners of the occluder
+  vec4 a;       ///< corners of the occluder; of the original method: see gvs_reverse.h
   vec4 b;
   vec4 c;
   uvec4 number;  ///< x, y: low and high half of its running number in the cell; z: bits of the faces that

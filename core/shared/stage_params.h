@@ -4,13 +4,25 @@
 #include "core/shared/types.h"
 SL_NAMESPACE_BEGIN
 
+/// Which border and reverse rays are traced: those of gvs++ (border.h, reverse.h), or of the original gvs
+/// (gvs_border.h, gvs_reverse.h).
+SL_CONST uint kSampleGvspp = 0u;
+SL_CONST uint kSampleGvs = 1u;
+/// Places on the border polygon that the original method may sample.
+SL_CONST uint kGvsPositions = 72u;
+
 /// Constant for a view cell.
 SL_STRUCT(StageParams) {
   uvec4 counts;    ///< x: n_ABSEdge, y: n_RSEdge, z: n_RSArea, w: number of faces
   uvec4 shifts;    ///< random shifts (Cranley-Patterson) for the bases 2, 3, 5, 7: of random sampling
   vec4 distances;  ///< x: delta_ABS relative to the distance, y: delta_ABS in world units,
                    ///< z: delta_RS relative, w: delta_RS in world units; relative and absolute parts add up
+  uvec4 method;    ///< x: kSample...
 };
+
+SL_FUNC bool isGvs(StageParams params) {
+  return params.method.x == kSampleGvs;
+}
 
 /// A run of random rays from one face: the points first .. first + count - 1 of the Halton sequence. Work
 /// items do not walk the sequence itself but its strata, so that neighbouring items trace coherent rays: see

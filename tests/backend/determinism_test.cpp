@@ -9,10 +9,11 @@ namespace {
 
 using testing_support::bakeOn;
 
-class Determinism : public testing::Test {
+class Determinism : public testing::TestWithParam<Method> {
  protected:
   static BakeParams params() {
     BakeParams p;
+    p.method = GetParam();
     p.n_rand = 150'000;
     p.validation_rays = 50'000;
     p.batch_rays = 1u << 18;
@@ -45,13 +46,13 @@ class Determinism : public testing::Test {
   const CellPvs reference_ = bakeOn("cpu", scene_, cell_, params());
 };
 
-TEST_F(Determinism, ReferenceIsWorthComparing) {
+TEST_P(Determinism, ReferenceIsWorthComparing) {
   EXPECT_GT(reference_.triangles.size(), 500u);
   EXPECT_GT(reference_.stats.border.new_triangles, 0u);
   EXPECT_GT(reference_.stats.reverse.new_triangles, 0u);
 }
 
-TEST_F(Determinism, AnyThreadCount) {
+TEST_P(Determinism, AnyThreadCount) {
   for (const int threads : {1, 2, 7}) {
     DeviceOptions options;
     options.threads = threads;
@@ -59,7 +60,7 @@ TEST_F(Determinism, AnyThreadCount) {
   }
 }
 
-TEST_F(Determinism, RepeatedRunsOnOneDevice) {
+TEST_P(Determinism, RepeatedRunsOnOneDevice) {
   const Bvh bvh = buildBvh(scene_.positions, scene_.triangles);
   for (const char* name : {"cpu", "opencl"}) {
     const auto device = makeDevice(name, scene_, bvh);
@@ -67,7 +68,7 @@ TEST_F(Determinism, RepeatedRunsOnOneDevice) {
   }
 }
 
-TEST_F(Determinism, AnyWorkGroupSize) {
+TEST_P(Determinism, AnyWorkGroupSize) {
   for (const uint32_t size : {1u, 5u, 64u}) {
     DeviceOptions options;
     options.work_group_size = size;
@@ -75,7 +76,7 @@ TEST_F(Determinism, AnyWorkGroupSize) {
   }
 }
 
-TEST_F(Determinism, HashSetAndArray) {
+TEST_P(Determinism, HashSetAndArray) {
   for (const char* name : {"cpu", "opencl"}) {
     DeviceOptions options;
     options.set = SetKind::kHash;
@@ -83,7 +84,7 @@ TEST_F(Determinism, HashSetAndArray) {
   }
 }
 
-TEST_F(Determinism, AnyTree) {
+TEST_P(Determinism, AnyTree) {
   BvhConfig tree;
   tree.max_leaf_size = 8;
   expectSame(bakeOn("cpu", scene_, cell_, params(), {}, tree), "leaves of 8");
@@ -92,7 +93,7 @@ TEST_F(Determinism, AnyTree) {
   expectSame(bakeOn("opencl", scene_, cell_, params(), {}, tree), "spatial splits on OpenCL");
 }
 
-TEST_F(Determinism, ScaleByAPowerOfTwo) {
+TEST_P(Determinism, ScaleByAPowerOfTwo) {
   Scene scaled = scene_;
   for (glm::vec3& p : scaled.positions) p *= 1024.0f;
   ViewCell cell = cell_;
@@ -103,13 +104,16 @@ TEST_F(Determinism, ScaleByAPowerOfTwo) {
   }
 }
 
-TEST_F(Determinism, AnotherSeedFindsOtherWitnesses) {
+TEST_P(Determinism, AnotherSeedFindsOtherWitnesses) {
   BakeParams other = params();
   other.seed = 2;
   const CellPvs pvs = bakeOn("cpu", scene_, cell_, other);
   ASSERT_FALSE(pvs.witnesses.empty());
   EXPECT_NE(pvs.witnesses.front().direction, reference_.witnesses.front().direction);
 }
+
+INSTANTIATE_TEST_SUITE_P(Methods, Determinism, testing::Values(Method::kGvspp, Method::kGvs),
+                         [](const auto& method) { return method.param == Method::kGvs ? "gvs" : "gvspp"; });
 
 }  // namespace
 }  // namespace sightline

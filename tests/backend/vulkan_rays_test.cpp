@@ -8,6 +8,7 @@
 #include "core/device/vulkan_runner.h"
 #include "core/device/vulkan_scene.h"
 #include "core/gvs/random_segment.h"
+#include "core/gvs/stage_rays.h"
 #include "core/scene/generate.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/border.h"
@@ -80,11 +81,16 @@ class VulkanRays : public testing::Test {
   Ray borderRayOf(const PvsEntry& entry, uint32_t k) const {
     const uvec4 bits = entry.origin_triangle;
     const vec3 origin(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z));
-    const uint32_t side = borderSide(k, params_);
-    const BorderEdge edge =
-        borderEdge(corner(bits.w, 0), corner(bits.w, 1), corner(bits.w, 2), side, origin, params_);
-    return borderRay(edge, k, origin, params_);
+    const vec3 a = corner(bits.w, 0), b = corner(bits.w, 1), c = corner(bits.w, 2);
+    if (isGvs(params_)) {
+      const vec3 from = gvsVertex(a, b, c, gvsFirstVertex(k), origin, params_);
+      return rayTo(origin, gvsPoint(from, gvsVertex(a, b, c, gvsSecondVertex(k), origin, params_), k));
+    }
+    return borderRay(borderEdge(a, b, c, borderSide(k, params_), origin, params_), k, origin, params_);
   }
+
+  /// Compares the border rays of entries, and the reverse rays of some of them.
+  void compareBorderAndReverse();
 
   vec3 corner(uint32_t triangle, int i) const { return scene_.positions[scene_.triangles[triangle][i]]; }
 
@@ -119,6 +125,17 @@ TEST_F(VulkanRays, Random) {
 
 /// Border rays of what random rays hit, and of every kind of triangle from points beside, behind and on it.
 TEST_F(VulkanRays, BorderAndReverse) {
+  compareBorderAndReverse();
+}
+
+/// The same of the original method: all places of the polygons, and rays past occluders.
+TEST_F(VulkanRays, BorderAndReverseOfGvs) {
+  params_.method.x = kSampleGvs;
+  runner_->launch.params = params_;
+  compareBorderAndReverse();
+}
+
+void VulkanRays::compareBorderAndReverse() {
   const CpuTracer tracer(scene_, bvh_);
   std::vector<PvsEntry> entries;
   const RandomSegment segment = makeRandomSegment(0, 0, 3000, 1);
@@ -129,7 +146,8 @@ TEST_F(VulkanRays, BorderAndReverse) {
         hit.triangle != kNoTriangle ? hit.triangle : slot * 7919u % uint32_t(scene_.triangles.size());
     entries.push_back({uvec4(floatBitsToUint(ray.origin.x), floatBitsToUint(ray.origin.y),
                              floatBitsToUint(ray.origin.z), triangle),
-                       uvec4(0)});
+                       uvec4(floatBitsToUint(ray.direction.x), floatBitsToUint(ray.direction.y),
+                             floatBitsToUint(ray.direction.z), kStageRandom)});
   }
   const uint32_t per_entry = borderRayCount(params_);
   const auto total = static_cast<uint32_t>(entries.size() * per_entry);
@@ -163,25 +181,16 @@ TEST_F(VulkanRays, BorderAndReverse) {
   for (uint32_t i = 0; i < reverse_total; ++i) {
     const uint32_t place = i / per_item, k = i % per_item;
     const Ray& ray = border[places[place]];
-    const vec3 target = add3(xyz3(ray.origin), xyz3(ray.direction));
     const uint64_t number = runner_->launch.items_before + place;
-    ReverseItem item{};
-    item.target = vec4(target, 0);
-    uint32_t mask = 0;
-    for (uint32_t f = 0; f < faces_.size(); ++f) mask |= uint32_t(faceLooksAt(faces_[f], target)) << f;
     const uint32_t occluder = occluders[places[place]];
-    item.number = uvec4(uint32_t(number), uint32_t(number >> 32), mask, occluder != kNoTriangle);
-    if (occluder != kNoTriangle) {
-      item.a = vec4(corner(occluder, 0), 0);
-      item.b = vec4(corner(occluder, 1), 0);
-      item.c = vec4(corner(occluder, 2), 0);
-    }
-    const Ray expected = mask == 0 ? noRay() : reverseRay(item, faces_[reverseFace(item, k)], k, params_);
+    const PvsEntry& entry = entries[places[place] / per_entry];
+    const ReverseItem item = reverseItemOf(scene_, faces_, entry, ray, occluder, number, params_);
+    const Ray expected = reverseRayOf(item, faces_, k, params_);
     ASSERT_PRED_FORMAT2(sameRay, reverse[i], expected) << "reverse ray " << i;
     excluded += !hasDirection(expected);
   }
   EXPECT_GT(excluded, 0u);
-  EXPECT_LT(excluded, reverse_total / 4 * 3);
+  EXPECT_LT(excluded, reverse_total / 20 * 19);
 }
 
 }  // namespace

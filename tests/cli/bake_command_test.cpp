@@ -300,6 +300,15 @@ TEST(BakeCommand, MethodsAreChosenByNameAndKeptInTheFile) {
   EXPECT_TRUE(contains(unknown, "best")) << unknown.output;
 }
 
+TEST(BakeCommand, NaiveGivesTheSetOfGvspp) {
+  const Workplace place(1);
+  ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);
+  ASSERT_EQ(runProgram(place.bake("y.pvs", "--method naive")).exit_code, 0);
+  EXPECT_EQ(loadPvs(place / "x.pvs").cells[0].triangles, loadPvs(place / "y.pvs").cells[0].triangles);
+  ASSERT_EQ(runProgram(place.bake("z.pvs", "--method gvs")).exit_code, 0);
+  EXPECT_GT(loadPvs(place / "z.pvs").cells[0].stats.border.rays, 0u);
+}
+
 /// What is given beside --thesis wins, wherever it stands.
 TEST(BakeCommand, TheThesisParametersGiveWayToOthers) {
   const Workplace place(1);

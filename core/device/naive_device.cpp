@@ -1,0 +1,202 @@
+#include "core/device/naive_device.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "core/gvs/random_segment.h"
+#include "core/gvs/stage_rays.h"
+#include "core/shared/random_ray.h"
+#include "core/shared/set.h"
+
+namespace sightline {
+namespace {
+
+/// Rays that travel together.
+constexpr size_t kChunk = 1u << 20;
+
+class NaiveDevice final : public Device {
+  // Generators first: their types are deduced.
+  /// A ray with its index (1 ..) in the batch.
+  struct BatchRay {
+    Ray ray;
+    uint32_t index;
+  };
+
+  auto slotRays(const RandomSegment& segment, uvec4 shifts) const {
+    return
+        [&segment, shifts, face = faces_.at(segment.range.x), walk = startSlotWalk()](uint32_t slot) mutable {
+          walk = walkToSlot(walk, segment, slot);
+          const uint32_t offset = walkOffset(walk, segment, slot);
+          return BatchRay{offsetRay(segment, face, shifts, offset), segment.batch.x + offset};
+        };
+  }
+
+  auto borderRays(uint32_t first) const {
+    return [rays = BorderRays(scene_, std::span(entries_).subspan(first), params_)](uint32_t number) mutable {
+      return BatchRay{rays(number), number + 1};
+    };
+  }
+
+  auto reverseRays(uint32_t first) const {
+    return [this, first](uint32_t number) {
+      const uint32_t per_item = reverseRayCount(params_);
+      return BatchRay{reverseRayOf(items_[first + number / per_item], faces_, number % per_item, params_),
+                      number + 1};
+    };
+  }
+
+ public:
+  NaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) : inner_(std::move(inner)), scene_(scene) {}
+
+  DeviceInfo info() const override { return inner_->info(); }
+
+  void beginCell(std::span<const Face> faces, const StageParams& params) override {
+    faces_.assign(faces.begin(), faces.end());
+    params_ = params;
+    set_.clear();
+    entries_.clear();
+    items_.clear();
+    collected_ = 0;
+    rays_traced_ = items_before_ = 0;
+  }
+
+  void traceRandom(const RandomSegment& segment) override {
+    trace(
+        slotCount(segment), [&] { return slotRays(segment, params_.shifts); },
+        [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
+  }
+
+  uint32_t traceBorder(uint32_t first, uint32_t count) override {
+    items_before_ += items_.size();
+    items_.clear();
+    const uint32_t per_entry = borderRayCount(params_);
+    trace(
+        uint64_t(count) * per_entry, [&] { return borderRays(first); },
+        [&](const BatchRay& ray, const Hit& hit) {
+          insert(hit.triangle, ray);
+          if (isDiscontinuity(ray.ray, hit, params_)) {
+            items_.push_back(
+                reverseItemOf(scene_, faces_, ray.ray, hit.triangle, items_before_ + items_.size()));
+          }
+        });
+    return static_cast<uint32_t>(items_.size());
+  }
+
+  void traceReverse(uint32_t first, uint32_t count) override {
+    trace(
+        uint64_t(count) * reverseRayCount(params_), [&] { return reverseRays(first); },
+        [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
+  }
+
+  uint32_t collect(uint32_t stage) override {
+    const auto begin = entries_.begin() + collected_;
+    std::sort(begin, entries_.end(),
+              [](const PvsEntry& a, const PvsEntry& b) { return a.origin_triangle.w < b.origin_triangle.w; });
+    for (auto entry = begin; entry != entries_.end(); ++entry) {
+      entry->direction_stage.w = stage;
+      set_[entry->origin_triangle.w].index = kSlotOld;
+    }
+    const auto found = static_cast<uint32_t>(entries_.end() - begin);
+    collected_ += found;
+    return found;
+  }
+
+  void insertContained(std::span<const uint32_t> triangles) override {
+    for (const uint32_t triangle : triangles) insert(triangle, {noRay(), 1});
+    collect(kStageContained);
+  }
+
+  uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {
+    uint64_t missing = 0;
+    trace(
+        slotCount(segment), [&] { return slotRays(segment, shifts); },
+        [&](const BatchRay&, const Hit& hit) {
+          missing += hit.triangle != kNoTriangle && !set_.contains(hit.triangle) ? 1 : 0;
+        });
+    return missing;
+  }
+
+  DeviceCounters counters() override { return {rays_traced_, inner_->counters().memory_bytes, true}; }
+  std::vector<PvsEntry> readPvs() override { return entries_; }
+
+  void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override { inner_->traceRays(rays, hits); }
+  void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
+                  std::span<uint32_t> triangles) override {
+    inner_->traceViews(views, resolution, triangles);
+  }
+
+ private:
+  /// A triangle of the set: the lowest index (1 ..) of the batch's rays that hit it, or kSlotOld; and, in its
+  /// batch, its place in entries_.
+  struct Found {
+    uint32_t index = kSlotOld;
+    size_t place = 0;
+  };
+
+  void insert(uint32_t triangle, const BatchRay& ray) {
+    if (triangle == kNoTriangle) return;
+    const auto [slot, is_new] = set_.try_emplace(triangle, Found{ray.index, entries_.size()});
+    if (is_new) {
+      entries_.push_back(entryOf(triangle, ray.ray));
+    } else if (ray.index < slot->second.index) {
+      slot->second.index = ray.index;
+      entries_[slot->second.place] = entryOf(triangle, ray.ray);
+    }
+  }
+
+  static PvsEntry entryOf(uint32_t triangle, const Ray& ray) {
+    const auto bits = [](const vec4& v, uint32_t w) {
+      return uvec4(floatBitsToUint(v.x), floatBitsToUint(v.y), floatBitsToUint(v.z), w);
+    };
+    return {bits(ray.origin, triangle), bits(ray.direction, 0)};
+  }
+
+  /// Traces the rays 0 .. count - 1 of generators that makeGenerator() returns, and hands those that have a
+  /// direction with their hits to take(ray, hit), in order.
+  void trace(uint64_t count, auto&& makeGenerator, auto&& take) {
+    for (uint64_t first = 0; first < count; first += kChunk) {
+      const auto size = static_cast<size_t>(std::min<uint64_t>(kChunk, count - first));
+      batch_.resize(size);
+      rays_.resize(size);
+      hits_.resize(size);
+      tbb::parallel_for(tbb::blocked_range<size_t>(0, size, 512), [&](const auto& range) {
+        auto generate = makeGenerator();
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+          batch_[i] = generate(static_cast<uint32_t>(first + i));
+          rays_[i] = batch_[i].ray;
+        }
+      });
+      inner_->traceRays(rays_, hits_);
+      for (size_t i = 0; i < size; ++i) {
+        if (!hasDirection(rays_[i])) continue;
+        ++rays_traced_;
+        take(batch_[i], hits_[i]);
+      }
+    }
+  }
+
+  std::unique_ptr<Device> inner_;
+  const Scene& scene_;
+  std::vector<Face> faces_;
+  StageParams params_{};
+  std::unordered_map<uint32_t, Found> set_;
+  std::vector<PvsEntry> entries_;  ///< the list, and after `collected_` of them those of the open batch
+  size_t collected_ = 0;
+  std::vector<ReverseItem> items_;  ///< of the last traceBorder
+  uint64_t items_before_ = 0;
+  uint64_t rays_traced_ = 0;
+  std::vector<BatchRay> batch_;  ///< of a chunk
+  std::vector<Ray> rays_;
+  std::vector<Hit> hits_;
+};
+
+}  // namespace
+
+std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) {
+  return std::make_unique<NaiveDevice>(std::move(inner), scene);
+}
+
+}  // namespace sightline
