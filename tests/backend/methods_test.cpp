@@ -125,7 +125,7 @@ TEST_P(Methods, GvsFindsMoreThanRandomRaysAndLessThanGvspp) {
   p.method = Method::kRandom;
   const CellPvs random = bakeOn(GetParam(), scene, cell, p);
   p.method = Method::kGvspp;
-  p.n_abs_edge = p.n_rs_edge = p.n_rs_area = 20;
+  p.n_abs_edge = p.n_rs_edge = p.n_rs_area = 8;
   const CellPvs gvspp = bakeOn(GetParam(), scene, cell, p);
   EXPECT_EQ(gvs.stats.iterations, 1u);
   EXPECT_GT(gvs.triangles.size(), random.triangles.size() * 11 / 10);
