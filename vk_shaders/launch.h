@@ -49,8 +49,11 @@ SL_STRUCT(VulkanLaunch) {
   uint64 indices;       ///< uint[]: triangles, or indices of set bits
   uint64 old_keys;      ///< the hash set before it grew
   uint64 old_winner;
-  uint64 items_before;  ///< discontinuities of the cell before those of the last border launch
-  uint capacity;        ///< of the hash set; 0: array
+  uint64 items_before;   ///< discontinuities of the cell before those of the last border launch
+  uint64 hemicube;       ///< ViewFrame[5] of the hemicube that is drawn
+  uint64 hemicubes;      ///< ViewFrame[5] a hemicube of the batch that is collected; 0: it was traced
+  uint64 raster_leaves;  ///< uint[] a pixel of the hemicube's images: leaf or kNoTriangle
+  uint capacity;         ///< of the hash set; 0: array
   uint old_capacity;
   uint border_first;   ///< entry of the first border ray
   uint reverse_first;  ///< first discontinuity of the reverse rays
@@ -59,9 +62,11 @@ SL_STRUCT(VulkanLaunch) {
   uint list_end;  ///< entries in the list
   uint word_count;
   uint block_count;
-  uint resolution;  ///< of the images of trace_views
-  uint level;       ///< of trace_gvs_border
-  uint padding;     ///< to a multiple of 8 bytes
+  uint resolution;         ///< of the images of trace_views
+  uint level;              ///< of trace_gvs_border
+  uint raster_resolution;  ///< of a hemicube's images
+  uint raster_first;       ///< index in the batch of the hemicube's first sample
+  float raster_near;       ///< distance of the near plane
 };
 
 SL_NAMESPACE_END

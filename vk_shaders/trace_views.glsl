@@ -2,11 +2,7 @@
 // Id images: the triangle behind every pixel, view after view, row after row.
 #extension GL_GOOGLE_include_directive : require
 #include "vk_shaders/trace.glsl"
-#include "core/shared/view_ray.h"
-
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Views {
-  ViewFrame at[];
-};
+#include "vk_shaders/views.glsl"
 
 void runItem(uint item) {
   uint resolution = SL_LAUNCH.resolution;

@@ -169,6 +169,7 @@ void writeReport(const BakeOptions& options, const Bake& bake, BakeReport& repor
 void runBake(const BakeOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   checkParams(options.params);
+  requireMethodOn(options.params.method, options.device);
   const std::array reports = {options.report, options.html, options.csv};
   requireSeparate(std::array{options.out, options.report, options.html, options.csv},
                   std::array{options.scene, options.cells});

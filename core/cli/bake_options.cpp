@@ -15,16 +15,15 @@ namespace {
 constexpr const char* kParamsGroup = "Parameters (they decide the result)";
 
 /// The methods that work.
-const std::vector<std::string> kMethods = {"gvs++", "gvs", "random", "naive"};
+const std::vector<std::string> kMethods = {"gvs++", "gvs", "random", "raster", "naive"};
 
 /// First of the parameters: CLI11 takes options in the order of declaration, so any other wins over --thesis.
 void declareMethod(CLI::App& command, BakeParams& params) {
   command
       .add_option_function<std::string>(
           "--method", [&params](const std::string& name) { params.method = *methodOf(name); },
-          "gvs++; gvs: the original, with fewer border and reverse rays; random: random rays alone; naive: "
-          "gvs++ with the set on "
-          "the host, for comparison")
+          "gvs++; gvs: the original, with fewer border and reverse rays; random: random rays alone; raster: "
+          "drawn hemicubes, on vulkan only; naive: gvs++ with the set on the host, for comparison")
       ->check(CLI::IsMember(kMethods))
       ->type_name("NAME")
       ->default_str(methodName(params.method))
@@ -62,6 +61,8 @@ void declareParams(CLI::App& command, BakeParams& params) {
   number("--delta-rs", params.delta_rs, "discontinuity threshold in world units, added to");
   number("--delta-rs-relative", params.delta_rs_relative,
          "discontinuity threshold as a share of the distance");
+  count("--raster-resolution", params.raster_resolution, 16, 16384,
+        "raster: pixels along an edge of a hemicube's front");
   count("--threshold", params.threshold, 0, 4294967295.0, "T: a quiet iteration finds fewer new triangles");
   count("--quiet-iterations", params.quiet_iterations, 1, 1000000, "stop after so many of them in a row");
   count("--max-rays", params.max_rays, 0, 1e18, "stop a cell after so many rays (0: no limit)");

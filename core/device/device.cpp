@@ -11,6 +11,10 @@
 
 namespace sightline {
 
+void Device::rasterize(std::span<const ViewFrame>, uint32_t, float) {
+  throw Error(info().id + " cannot rasterise: " + whyNoRaster(), kExitUsage);
+}
+
 namespace {
 
 /// The kind alone, or with ":" and a selection.

@@ -22,7 +22,7 @@ struct DeviceInfo {
   std::string layout;    ///< tree layout and kind of traversal, e.g. "bvh2, packets of 8"
   std::string unusable;  ///< why it cannot run; empty: it can
   uint64_t memory_bytes = 0;
-  bool on_cpu = false;   ///< a processor does the work (cpu, PoCL, lavapipe): fewer rays are to be had
+  bool on_cpu = false;  ///< a processor does the work (cpu, PoCL, lavapipe): fewer rays are to be had
   // The driver's own trees (vulkan), once a scene is on the device; else 0.
   uint32_t driver_tree_parts = 0;        ///< bottom-level acceleration structures
   uint64_t driver_tree_bytes = 0;        ///< of all acceleration structures
@@ -74,6 +74,15 @@ class Device {
 
   /// Reverse rays of the discontinuities first .. first + count - 1 of the last traceBorder.
   virtual void traceReverse(uint32_t first, uint32_t count) = 0;
+
+  /// Whether rasterize works here; if not, why in one line.
+  virtual std::string whyNoRaster() const { return "only Vulkan devices rasterise"; }
+
+  /// Draws a hemicube (hemicubeAt, core/gvs/hemicube.h) of resolution * resolution pixels an image, and
+  /// inserts the triangle that each of its hemicubeSamples shows under that sample's index: a batch's
+  /// hemicubes have consecutive indices, and one resolution. Counts samples as rays. near_distance:
+  /// hemicubeNear. A batch is either traced or rasterised. Throws Error where whyNoRaster says something.
+  virtual void rasterize(std::span<const ViewFrame> hemicube, uint32_t resolution, float near_distance);
 
   /// Closes a batch; returns how many triangles were new. stage: kStage... of the batch.
   virtual uint32_t collect(uint32_t stage) = 0;

@@ -56,6 +56,21 @@ namespace sightline {
   X(vkCmdPushConstants)                         \
   X(vkCmdBindPipeline)                          \
   X(vkCmdDispatch)                              \
+  X(vkCreateImage)                              \
+  X(vkDestroyImage)                             \
+  X(vkGetImageMemoryRequirements)               \
+  X(vkBindImageMemory)                          \
+  X(vkCreateImageView)                          \
+  X(vkDestroyImageView)                         \
+  X(vkCreateRenderPass)                         \
+  X(vkDestroyRenderPass)                        \
+  X(vkCreateFramebuffer)                        \
+  X(vkDestroyFramebuffer)                       \
+  X(vkCreateGraphicsPipelines)                  \
+  X(vkCmdBeginRenderPass)                       \
+  X(vkCmdEndRenderPass)                         \
+  X(vkCmdDraw)                                  \
+  X(vkCmdCopyImageToBuffer)                     \
   X(vkCreateAccelerationStructureKHR)           \
   X(vkDestroyAccelerationStructureKHR)          \
   X(vkGetAccelerationStructureBuildSizesKHR)    \

@@ -10,6 +10,8 @@
 namespace sightline {
 namespace {
 
+constexpr const char* kAdvice = "; use the device cpu or opencl, or a smaller scene";
+
 double mebibytes(uint64_t bytes) {
   return double(bytes) / 1048576.0;
 }
@@ -33,6 +35,14 @@ std::vector<uint32_t> chooseFamilies(const VulkanApi& api, VkPhysicalDevice devi
   return {*compute, *transfer};
 }
 
+bool hasGraphics(const VulkanApi& api, VkPhysicalDevice device, uint32_t family) {
+  uint32_t count = 0;
+  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  return families[family].queueFlags & VK_QUEUE_GRAPHICS_BIT;
+}
+
 }  // namespace
 
 VulkanBuffer& VulkanBuffer::operator=(VulkanBuffer&& other) noexcept {
@@ -41,11 +51,17 @@ VulkanBuffer& VulkanBuffer::operator=(VulkanBuffer&& other) noexcept {
   std::swap(bytes_, other.bytes_);
   std::swap(address_, other.address_);
   std::swap(mapped_, other.mapped_);
+  return *this;
+}
+
+VulkanMemoryBlock& VulkanMemoryBlock::operator=(VulkanMemoryBlock&& other) noexcept {
+  std::swap(memory_, other.memory_);
+  std::swap(bytes_, other.bytes_);
   std::swap(total_, other.total_);
   return *this;
 }
 
-VulkanBuffer::~VulkanBuffer() {
+VulkanMemoryBlock::~VulkanMemoryBlock() {
   if (total_) *total_ -= bytes_;
 }
 
@@ -59,6 +75,12 @@ VulkanContext::VulkanContext(const std::string& selector, bool ray_queries, uint
   }
   choice_.info.layout = vulkanLayout(uses_pipelines_);
   families_ = chooseFamilies(api_, choice_.physical);
+  const std::string lacking = !hasGraphics(api_, choice_.physical, families_.front())
+                                  ? "no queue for graphics"
+                              : !abilities.multiview      ? "no images of several views (multiview)"
+                              : !abilities.clip_distances ? "no clip distances in shaders"
+                                                          : "";
+  why_no_raster_ = lacking;
   api_.vkGetPhysicalDeviceMemoryProperties(choice_.physical, &memory_);
   readLimits();
   memory_limit_ = memory_budget > 0 ? std::min(memory_budget, info().memory_bytes) : info().memory_bytes;
@@ -82,12 +104,17 @@ void VulkanContext::createDevice() {
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR);
   structures.accelerationStructure = VK_TRUE;
   structures.pNext = uses_pipelines_ ? static_cast<void*>(&pipelines) : &queries;
+  auto views =
+      vkStruct<VkPhysicalDeviceVulkan11Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES);
+  views.multiview = why_no_raster_.empty();
+  views.pNext = &structures;
   auto core =
       vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
   core.bufferDeviceAddress = core.scalarBlockLayout = VK_TRUE;
-  core.pNext = &structures;
+  core.pNext = &views;
   auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.features.shaderInt64 = features.features.shaderFloat64 = VK_TRUE;
+  features.features.shaderClipDistance = why_no_raster_.empty();
   features.pNext = &core;
 
   const char* extensions[] = {
@@ -134,6 +161,8 @@ void VulkanContext::readLimits() {
   const uint64_t width = uint64_t(general.maxComputeWorkGroupCount[0]) * general.maxComputeWorkGroupSize[0];
   limits_.launch_rays =
       static_cast<uint32_t>(std::min<uint64_t>(pipelines.maxRayDispatchInvocationCount, width));
+  limits_.image_side =
+      std::min({general.maxImageDimension2D, general.maxFramebufferWidth, general.maxFramebufferHeight});
   limits_.handle_bytes = pipelines.shaderGroupHandleSize;
   limits_.table_alignment = pipelines.shaderGroupBaseAlignment;
 }
@@ -157,15 +186,46 @@ uint32_t VulkanContext::memoryType(uint32_t allowed, VulkanMemory memory) const 
   return *second;
 }
 
+void VulkanContext::requireOneAllocation(uint64_t bytes, const char* what) const {
+  if (bytes <= limits_.allocation_bytes) return;
+  throw Error(fmt::format(
+      "{} ({}): the {} take {:.0f} MiB, more than the {:.0f} MiB that the driver allows one buffer{}",
+      info().id, info().name, what, mebibytes(bytes), mebibytes(limits_.allocation_bytes), kAdvice));
+}
+
+VulkanMemoryBlock VulkanContext::allocate(uint64_t bytes, const VkMemoryRequirements& requirements,
+                                          VulkanMemory memory, const char* what) const {
+  requireOneAllocation(bytes, what);
+  auto flags = vkStruct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
+  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
+  auto allocate = vkStruct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
+  if (memory == VulkanMemory::kDevice) allocate.pNext = &flags;
+  allocate.allocationSize = requirements.size;
+  allocate.memoryTypeIndex = memoryType(requirements.memoryTypeBits, memory);
+  // Drivers on the processor promise more memory than there is.
+  VkDeviceMemory block = VK_NULL_HANDLE;
+  const VkResult code = fits(bytes) ? api_.vkAllocateMemory(device_, &allocate, nullptr, &block)
+                                    : VK_ERROR_OUT_OF_DEVICE_MEMORY;
+  if (code == VK_ERROR_OUT_OF_DEVICE_MEMORY || code == VK_ERROR_OUT_OF_HOST_MEMORY) {
+    throw Error(fmt::format(
+        "{} ({}): the {} take {:.1f} MiB, but {:.1f} of the {:.1f} MiB that it may use are in use{}",
+        info().id, info().name, what, mebibytes(bytes), mebibytes(*allocated_), mebibytes(memory_limit_),
+        kAdvice));
+  }
+  checkVk(code, "vkAllocateMemory");
+  VulkanMemoryBlock result;
+  result.memory_ = {*this, block, [](const VulkanContext& context, VkDeviceMemory freed) {
+                      context.api().vkFreeMemory(context.device(), freed, nullptr);
+                    }};
+  result.bytes_ = bytes;
+  result.total_ = allocated_;
+  *allocated_ += bytes;
+  return result;
+}
+
 VulkanBuffer VulkanContext::buffer(uint64_t bytes, const char* what, VulkanMemory memory) const {
   bytes = (std::max<uint64_t>(bytes, 16) + 3) / 4 * 4;
-  const char* advice = "; use the device cpu or opencl, or a smaller scene";
-  if (bytes > limits_.allocation_bytes) {
-    throw Error(fmt::format(
-        "{} ({}): the {} take {:.0f} MiB, more than the {:.0f} MiB that the driver allows "
-        "one buffer{}",
-        info().id, info().name, what, mebibytes(bytes), mebibytes(limits_.allocation_bytes), advice));
-  }
+  requireOneAllocation(bytes, what);
   auto info = vkStruct<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
   info.size = bytes;
   info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
@@ -188,39 +248,17 @@ VulkanBuffer VulkanContext::buffer(uint64_t bytes, const char* what, VulkanMemor
                     }};
   VkMemoryRequirements requirements{};
   api_.vkGetBufferMemoryRequirements(device_, handle, &requirements);
-
-  auto flags = vkStruct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
-  flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
-  auto allocate = vkStruct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-  if (memory == VulkanMemory::kDevice) allocate.pNext = &flags;
-  allocate.allocationSize = requirements.size;
-  allocate.memoryTypeIndex = memoryType(requirements.memoryTypeBits, memory);
-  // Drivers on the processor promise more memory than there is.
-  VkDeviceMemory block = VK_NULL_HANDLE;
-  const VkResult code = fits(bytes) ? api_.vkAllocateMemory(device_, &allocate, nullptr, &block)
-                                    : VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  if (code == VK_ERROR_OUT_OF_DEVICE_MEMORY || code == VK_ERROR_OUT_OF_HOST_MEMORY) {
-    throw Error(
-        fmt::format("{} ({}): the {} take {:.1f} MiB, but {:.1f} of the {:.1f} MiB that it may use are in "
-                    "use{}",
-                    this->info().id, this->info().name, what, mebibytes(bytes), mebibytes(*allocated_),
-                    mebibytes(memory_limit_), advice));
-  }
-  checkVk(code, "vkAllocateMemory");
-  result.memory_ = {*this, block, [](const VulkanContext& context, VkDeviceMemory freed) {
-                      context.api().vkFreeMemory(context.device(), freed, nullptr);
-                    }};
-  checkVk(api_.vkBindBufferMemory(device_, handle, block, 0), "vkBindBufferMemory");
+  result.memory_ = allocate(bytes, requirements, memory, what);
+  checkVk(api_.vkBindBufferMemory(device_, handle, result.memory_.get(), 0), "vkBindBufferMemory");
   if (memory == VulkanMemory::kDevice) {
     auto of = vkStruct<VkBufferDeviceAddressInfo>(VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO);
     of.buffer = handle;
     result.address_ = api_.vkGetBufferDeviceAddress(device_, &of);
   } else {
-    checkVk(api_.vkMapMemory(device_, block, 0, VK_WHOLE_SIZE, 0, &result.mapped_), "vkMapMemory");
+    checkVk(api_.vkMapMemory(device_, result.memory_.get(), 0, VK_WHOLE_SIZE, 0, &result.mapped_),
+            "vkMapMemory");
   }
   result.bytes_ = bytes;
-  result.total_ = allocated_;
-  *allocated_ += bytes;
   return result;
 }
 

@@ -45,13 +45,28 @@ enum class VulkanMemory {
   kReadback,  ///< host-visible and cached, read by the host
 };
 
+/// Device memory that counts as allocated as long as it lives; empty by default.
+class VulkanMemoryBlock {
+ public:
+  VulkanMemoryBlock() = default;
+  VulkanMemoryBlock(VulkanMemoryBlock&& other) noexcept { *this = std::move(other); }
+  VulkanMemoryBlock& operator=(VulkanMemoryBlock&& other) noexcept;
+  ~VulkanMemoryBlock();
+  VkDeviceMemory get() const { return memory_.get(); }
+
+ private:
+  friend class VulkanContext;
+  VulkanHandle<VkDeviceMemory> memory_;
+  uint64_t bytes_ = 0;
+  std::shared_ptr<uint64_t> total_;  ///< of the context: bytes in all its buffers and images
+};
+
 /// Memory with its buffer; empty by default. Outlives no context.
 class VulkanBuffer {
  public:
   VulkanBuffer() = default;
   VulkanBuffer(VulkanBuffer&& other) noexcept { *this = std::move(other); }
   VulkanBuffer& operator=(VulkanBuffer&& other) noexcept;
-  ~VulkanBuffer();
   VkBuffer get() const { return buffer_.get(); }
   uint64_t bytes() const { return bytes_; }
   /// For shaders and for the building of acceleration structures.
@@ -61,12 +76,11 @@ class VulkanBuffer {
 
  private:
   friend class VulkanContext;
-  VulkanHandle<VkDeviceMemory> memory_;
+  VulkanMemoryBlock memory_;
   VulkanHandle<VkBuffer> buffer_;  // goes first
   uint64_t bytes_ = 0;
   VkDeviceAddress address_ = 0;
   void* mapped_ = nullptr;
-  std::shared_ptr<uint64_t> total_;  ///< of the context: bytes in all its buffers
 };
 
 /// What we need to know of a device's limits.
@@ -76,6 +90,7 @@ struct VulkanLimits {
   uint32_t scratch_alignment = 0;
   uint32_t launch_rays = 0;      ///< of one trace command
   uint32_t launch_groups = 0;    ///< of one dispatch
+  uint32_t image_side = 0;       ///< pixels of an image that can be drawn into
   uint32_t handle_bytes = 0;     ///< shader group handle
   uint32_t table_alignment = 0;  ///< of the parts of a shader binding table
 };
@@ -95,6 +110,8 @@ class VulkanContext {
   const DeviceInfo& info() const { return choice_.info; }
   const VulkanLimits& limits() const { return limits_; }
   bool usesPipelines() const { return uses_pipelines_; }
+  /// Why it cannot rasterise (queue(), several views at once), in a few words; empty: it can.
+  const std::string& whyNoRaster() const { return why_no_raster_; }
   uint64_t allocatedBytes() const { return *allocated_; }
   /// Whether a buffer of this size is within the limits.
   bool fits(uint64_t bytes) const {
@@ -107,17 +124,22 @@ class VulkanContext {
   VkQueue transferQueue() const { return transfer_queue_; }
   uint32_t transferFamily() const { return families_.back(); }
 
+  /// For a buffer or an image of `bytes` bytes. what: as of buffer().
+  VulkanMemoryBlock allocate(uint64_t bytes, const VkMemoryRequirements& requirements, VulkanMemory memory,
+                             const char* what) const;
   /// what: for the message when it does not fit ("triangles of the scene"). 0 bytes: a small dummy.
   VulkanBuffer buffer(uint64_t bytes, const char* what, VulkanMemory memory = VulkanMemory::kDevice) const;
 
  private:
   void createDevice();
+  void requireOneAllocation(uint64_t bytes, const char* what) const;
   void readLimits();
   uint32_t memoryType(uint32_t allowed, VulkanMemory memory) const;
 
   VulkanApi api_;
   VulkanDeviceChoice choice_;
   bool uses_pipelines_;
+  std::string why_no_raster_;
   VkPhysicalDeviceMemoryProperties memory_{};
   VulkanLimits limits_;
   uint64_t memory_limit_ = 0;       ///< bytes that all buffers may take

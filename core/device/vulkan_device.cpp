@@ -4,11 +4,13 @@
 #include <cstring>
 #include <optional>
 
+#include "core/device/vulkan_raster.h"
 #include "core/device/vulkan_scene.h"
 #include "core/device/vulkan_set.h"
 #include "core/gvs/random_segment.h"
 #include "core/shared/border.h"
 #include "core/shared/gvs_border.h"
+#include "core/shared/hemicube.h"
 #include "core/shared/reverse.h"
 
 namespace sightline {
@@ -40,6 +42,7 @@ class VulkanDevice final : public Device {
     reverse_list_ = VulkanStage::list(context_, "reverse_items");
     append_ = VulkanStage::list(context_, "append_entries");
     contained_ = VulkanStage::list(context_, "insert_contained");
+    pixels_ = VulkanStage::list(context_, "insert_pixels");
     faces_ = context_.buffer(6 * sizeof(Face), "faces of the view cell");
     launch_.faces = faces_.address();
     reserveEntries(1u << 16);
@@ -59,6 +62,7 @@ class VulkanDevice final : public Device {
     launch_.items_before = 0;
     set_.clear();
     segments_.clear();
+    hemicubes_.clear();
     size_ = discontinuities_ = 0;
     rays_ = 0;
   }
@@ -98,6 +102,27 @@ class VulkanDevice final : public Device {
     traceUntilItFits([&] { runner_.run(tracing(reverse_, "trace_reverse"), total); });
   }
 
+  std::string whyNoRaster() const override { return context_.whyNoRaster(); }
+
+  void rasterize(std::span<const ViewFrame> hemicube, uint32_t resolution, float near_distance) override {
+    if (!raster_ || raster_->resolution() != resolution) {
+      runner_.commands.finish();
+      raster_.reset();
+      raster_.emplace(context_, resolution);
+    }
+    const uint32_t samples = hemicubeSamples(resolution);
+    reserve(hemicube_, launch_.hemicube, hemicube.size_bytes(), "views of a hemicube");
+    updateInPieces(hemicube_, hemicube.data(), hemicube.size());
+    launch_.raster_leaves = raster_->leaves().address();
+    launch_.raster_resolution = resolution;
+    launch_.raster_first = static_cast<uint32_t>(hemicubes_.size() / kHemicubeViews * samples + 1);
+    launch_.raster_near = near_distance;
+    raster_->record(runner_.commands, runner_.recordLaunch(), triangle_count_);
+    traceUntilItFits([&] { runner_.run(pixels_, samples); });
+    hemicubes_.insert(hemicubes_.end(), hemicube.begin(), hemicube.end());
+    rays_ += samples;
+  }
+
   uint32_t collect(uint32_t stage) override {
     countBits(set_.fresh(), set_.freshWords());
     const uint32_t found = runner_.takeCounts().listed;
@@ -107,6 +132,11 @@ class VulkanDevice final : public Device {
       reserve(segment_buffer_, launch_.segments, segments_.size() * sizeof(RandomSegment), "random segments");
       updateInPieces(segment_buffer_, segments_.data(), segments_.size());
       launch_.segment_count = static_cast<uint32_t>(segments_.size());
+      launch_.hemicubes = 0;
+      if (!hemicubes_.empty()) {
+        reserve(hemicube_batch_, launch_.hemicubes, hemicubes_.size() * sizeof(ViewFrame), "hemicubes");
+        updateInPieces(hemicube_batch_, hemicubes_.data(), hemicubes_.size());
+      }
       launch_.stage = stage;
       launch_.list_end = size_;
       runner_.run(append_, found);
@@ -114,6 +144,7 @@ class VulkanDevice final : public Device {
       set_.fit(size_);
     }
     segments_.clear();
+    hemicubes_.clear();
     return found;
   }
 
@@ -285,11 +316,14 @@ class VulkanDevice final : public Device {
   VulkanScene scene_;
   VulkanSet set_;
   VulkanBuffer faces_, entries_, segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_,
-      border_edges_, reverse_items_, rays_buffer_, hits_buffer_, views_, view_triangles_, readback_;
+      border_edges_, reverse_items_, rays_buffer_, hits_buffer_, views_, view_triangles_, hemicube_,
+      hemicube_batch_, readback_;
   std::optional<VulkanUpload> upload_;
-  VulkanStage count_, sum_, write_, edges_, reverse_list_, append_, contained_;
+  VulkanStage count_, sum_, write_, edges_, reverse_list_, append_, contained_, pixels_;
   std::optional<VulkanStage> random_, missing_, border_, reverse_, rays_stage_, views_stage_, gvs_border_;
+  std::optional<VulkanRaster> raster_;   ///< made when it is first needed
   std::vector<RandomSegment> segments_;  ///< of the batch
+  std::vector<ViewFrame> hemicubes_;     ///< of the batch, five views each
   uint32_t entry_capacity_ = 0;
   uint32_t size_ = 0;             ///< entries of the list
   uint32_t discontinuities_ = 0;  ///< of the last traceBorder

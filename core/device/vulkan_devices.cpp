@@ -33,8 +33,11 @@ VulkanAbilities abilitiesOf(const VulkanApi& api, VkPhysicalDevice device, uint3
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR);
   auto structures = vkStruct<VkPhysicalDeviceAccelerationStructureFeaturesKHR>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR);
+  auto views =
+      vkStruct<VkPhysicalDeviceVulkan11Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES);
   auto core =
       vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+  core.pNext = &views;
   auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   // Only structs of extensions that are there may be asked for.
   const auto ask = [&](auto& extension, const char* name) {
@@ -52,6 +55,8 @@ VulkanAbilities abilitiesOf(const VulkanApi& api, VkPhysicalDevice device, uint3
   abilities.scalar_layout = core.scalarBlockLayout;
   abilities.int64 = features.features.shaderInt64;
   abilities.float64 = features.features.shaderFloat64;
+  abilities.multiview = views.multiview;
+  abilities.clip_distances = features.features.shaderClipDistance;
   return abilities;
 }
 

@@ -19,6 +19,9 @@ struct VulkanAbilities {
   bool addresses = false;    ///< of buffers
   bool scalar_layout = false;
   bool int64 = false, float64 = false;  ///< in shaders
+  // Needed by rasterising alone.
+  bool multiview = false;       ///< several images from one draw
+  bool clip_distances = false;  ///< in shaders
 };
 
 /// Why a device cannot trace, in one line; empty: it can.

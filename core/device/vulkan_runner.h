@@ -24,6 +24,8 @@ class VulkanRunner {
 
   /// Records the stage over `count` work items with the launch as it is now.
   void run(const VulkanStage& stage, uint32_t count);
+  /// Records that the launch is what it is now, for commands that are no stage; returns its address.
+  VkDeviceAddress recordLaunch();
   /// Runs everything recorded, and sets the counters back to 0.
   VulkanCounts takeCounts();
 

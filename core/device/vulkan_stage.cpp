@@ -9,12 +9,22 @@
 namespace sightline {
 namespace {
 
-/// What the shaders get by push constants (vk_shaders/state.glsl).
-struct Push {
-  VkDeviceAddress launch;
-  uint32_t first_item;
-  uint32_t item_end;
-};
+VkRayTracingShaderGroupCreateInfoKHR groupInfo(VkRayTracingShaderGroupTypeKHR type, uint32_t general,
+                                               uint32_t closest_hit) {
+  auto info = vkStruct<VkRayTracingShaderGroupCreateInfoKHR>(
+      VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR);
+  info.type = type;
+  info.generalShader = general;
+  info.closestHitShader = closest_hit;
+  info.anyHitShader = info.intersectionShader = VK_SHADER_UNUSED_KHR;
+  return info;
+}
+
+uint64_t alignUp(uint64_t value, uint64_t alignment) {
+  return (value + alignment - 1) / alignment * alignment;
+}
+
+}  // namespace
 
 VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name) {
   const std::span<const uint32_t> code = shaderCode(name);
@@ -37,26 +47,22 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderM
   return info;
 }
 
-VkRayTracingShaderGroupCreateInfoKHR groupInfo(VkRayTracingShaderGroupTypeKHR type, uint32_t general,
-                                               uint32_t closest_hit) {
-  auto info = vkStruct<VkRayTracingShaderGroupCreateInfoKHR>(
-      VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR);
-  info.type = type;
-  info.generalShader = general;
-  info.closestHitShader = closest_hit;
-  info.anyHitShader = info.intersectionShader = VK_SHADER_UNUSED_KHR;
-  return info;
-}
-
-uint64_t alignUp(uint64_t value, uint64_t alignment) {
-  return (value + alignment - 1) / alignment * alignment;
+VulkanHandle<VkPipelineLayout> pushLayout(const VulkanContext& context, VkShaderStageFlags stages) {
+  const VkPushConstantRange range{stages, 0, sizeof(VulkanPush)};
+  auto info = vkStruct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
+  info.pushConstantRangeCount = 1;
+  info.pPushConstantRanges = &range;
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  checkVk(context.api().vkCreatePipelineLayout(context.device(), &info, nullptr, &layout),
+          "vkCreatePipelineLayout");
+  return {context, layout, [](const VulkanContext& c, VkPipelineLayout handle) {
+            c.api().vkDestroyPipelineLayout(c.device(), handle, nullptr);
+          }};
 }
 
 void destroyPipeline(const VulkanContext& context, VkPipeline pipeline) {
   context.api().vkDestroyPipeline(context.device(), pipeline, nullptr);
 }
-
-}  // namespace
 
 VulkanStage VulkanStage::tracing(const VulkanContext& context, const std::string& name, uint32_t group_size) {
   VulkanStage stage;
@@ -77,20 +83,6 @@ VulkanStage VulkanStage::list(const VulkanContext& context, const std::string& n
   stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
   stage.createPipeline(name + ".comp", 64);
   return stage;
-}
-
-void VulkanStage::createLayout(VkShaderStageFlags stages) {
-  stages_ = stages;
-  const VkPushConstantRange range{stages, 0, sizeof(Push)};
-  auto info = vkStruct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
-  info.pushConstantRangeCount = 1;
-  info.pPushConstantRanges = &range;
-  VkPipelineLayout layout = VK_NULL_HANDLE;
-  checkVk(context_->api().vkCreatePipelineLayout(context_->device(), &info, nullptr, &layout),
-          "vkCreatePipelineLayout");
-  layout_ = {*context_, layout, [](const VulkanContext& c, VkPipelineLayout handle) {
-               c.api().vkDestroyPipelineLayout(c.device(), handle, nullptr);
-             }};
 }
 
 void VulkanStage::createPipeline(const std::string& name, uint32_t group_size) {
@@ -161,7 +153,7 @@ void VulkanStage::record(VkCommandBuffer commands, VkDeviceAddress launch, uint3
                         pipelines ? VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR : VK_PIPELINE_BIND_POINT_COMPUTE,
                         pipeline_.get());
   for (uint64_t first = 0; first < count; first += most) {
-    const Push push{launch, static_cast<uint32_t>(first), count};
+    const VulkanPush push{launch, static_cast<uint32_t>(first), count};
     api.vkCmdPushConstants(commands, layout_.get(), stages_, 0, sizeof push, &push);
     const auto items = static_cast<uint32_t>(std::min<uint64_t>(most, count - first));
     if (pipelines) {

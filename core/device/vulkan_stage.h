@@ -6,6 +6,21 @@
 
 namespace sightline {
 
+/// What all shaders get by push constants (vk_shaders/state.glsl).
+struct VulkanPush {
+  VkDeviceAddress launch;  ///< of the VulkanLaunch
+  uint32_t first_item;
+  uint32_t item_end;
+};
+
+/// The embedded shader of this name. Throws Error.
+VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name);
+/// Its main function as a stage.
+VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderModule module);
+/// A layout of push constants for these stages and nothing else.
+VulkanHandle<VkPipelineLayout> pushLayout(const VulkanContext& context, VkShaderStageFlags stages);
+void destroyPipeline(const VulkanContext& context, VkPipeline pipeline);
+
 /// A program that runs one work item an invocation: a tracing stage, or a compute shader over a list.
 class VulkanStage {
  public:
@@ -20,7 +35,10 @@ class VulkanStage {
   void record(VkCommandBuffer commands, VkDeviceAddress launch, uint32_t count) const;
 
  private:
-  void createLayout(VkShaderStageFlags stages);
+  void createLayout(VkShaderStageFlags stages) {
+    stages_ = stages;
+    layout_ = pushLayout(*context_, stages);
+  }
   void createPipeline(const std::string& name, uint32_t group_size);
   void createRayPipeline(const std::string& name);
 

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/gvs/hemicube.h"
 #include "core/gvs/random_segment.h"
 #include "core/scene/contained.h"
 #include "core/shared/border.h"
@@ -55,8 +56,8 @@ std::vector<uint32_t> raysByArea(std::span<const Face> faces, uint32_t total) {
 /// One cell's bake in progress.
 class CellBake {
  public:
-  CellBake(Device& device, const BakeParams& params, std::vector<Face> faces, uint32_t cell_index,
-           const BakeHooks& hooks)
+  CellBake(Device& device, const Scene& scene, const BakeParams& params, std::vector<Face> faces,
+           uint32_t cell_index, const BakeHooks& hooks)
       : device_(device),
         params_(params),
         faces_(std::move(faces)),
@@ -68,6 +69,7 @@ class CellBake {
     stage_params_.distances =
         vec4(params.delta_abs_relative, params.delta_abs, params.delta_rs_relative, params.delta_rs);
     stage_params_.method.x = params.method == Method::kGvs ? kSampleGvs : kSampleGvspp;
+    if (params.method == Method::kRaster) near_distance_ = hemicubeNear(scene, faces_);
     device_.beginCell(faces_, stage_params_);
   }
 
@@ -77,7 +79,7 @@ class CellBake {
     for (bool more = true; more;) {
       ++stats_.iterations;
       iteration_new_ = 0;
-      more = sampleRandom() && (!explores() || explore());
+      more = sample() && (!explores() || explore());
       quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
       if (quiet >= params_.quiet_iterations) more = false;
     }
@@ -129,7 +131,10 @@ class CellBake {
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
   /// Whether new triangles are explored, or random rays are all there is.
-  bool explores() const { return params_.method != Method::kRandom; }
+  bool explores() const { return params_.method != Method::kRandom && params_.method != Method::kRaster; }
+
+  /// One iteration's samples before any exploration. false: a limit was reached.
+  bool sample() { return params_.method == Method::kRaster ? sampleHemicubes() : sampleRandom(); }
 
   /// Calls launch for the runs of the sequence that cover counts[f] rays of each face, starting at point
   /// `first`; stops early when it returns false.
@@ -159,6 +164,23 @@ class CellBake {
     next_point_ += params_.n_rand;
     close(kStageRandom, stats_.random, start);
     if (!explores()) explored_ = pvs_size_;
+    return more;
+  }
+
+  /// As many hemicubes as have about as many samples as an iteration has random rays, one at least.
+  bool sampleHemicubes() {
+    const auto start = Clock::now();
+    const uint32_t samples = hemicubeSamples(params_.raster_resolution);
+    const uint32_t hemicubes = std::max(1u, params_.n_rand / samples);
+    bool more = true;
+    for (uint32_t i = 0; i < hemicubes && more; ++i) {
+      const Hemicube hemicube = placeHemicube(faces_, next_point_++, stage_params_.shifts);
+      device_.rasterize(hemicube, params_.raster_resolution, near_distance_);
+      random_left_ = (hemicubes - 1 - i) * samples;
+      more = finishLaunch(kStageRandom, stats_.random);
+    }
+    close(kStageRandom, stats_.random, start);
+    explored_ = pvs_size_;
     return more;
   }
 
@@ -267,6 +289,7 @@ class CellBake {
   CellStats stats_;
   Clock::time_point start_ = Clock::now();
   uint64_t next_point_ = 0;  ///< of the Halton sequence; never restarts
+  float near_distance_ = 0;  ///< of hemicubes
   uint64_t rays_ = 0;
   uint32_t random_left_ = 0;  ///< random rays of this iteration still to trace
   uint32_t pvs_size_ = 0;
@@ -302,8 +325,9 @@ void checkParams(const BakeParams& p) {
   const auto require = [](bool good, const char* line) {
     if (!good) throw Error(line, kExitUsage);
   };
-  require(p.method != Method::kRaster && p.method <= Method::kNaive,
-          "this method is not built in: choose gvs++, gvs, random or naive");
+  require(p.method <= Method::kNaive, "no such method");
+  require(p.raster_resolution >= 16 && p.raster_resolution <= kMaxViewResolution,
+          "raster-resolution must be 16 .. 16384");
   require(p.target_error == 0, "target-error must be 0");
   require(p.n_rand >= 1 && p.n_rand <= 0xfffffffdu, "n-rand must be 1 .. 4294967293");
   require(p.n_abs_edge <= 1000, "n-abs-edge must be 0 .. 1000");
@@ -321,13 +345,18 @@ void checkParams(const BakeParams& p) {
   require(std::isfinite(p.max_seconds) && p.max_seconds >= 0, "max-seconds must be finite and not negative");
 }
 
+void requireMethodOn(Method method, const std::string& device) {
+  if (method != Method::kRaster || device.starts_with("vulkan")) return;
+  throw Error("the method raster draws by Vulkan: use --device vulkan, not " + device, kExitUsage);
+}
+
 CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
                  const BakeParams& params, const BakeHooks& hooks) {
   checkParams(params);
   if (hooks.trace != nullptr) *hooks.trace = {};
   CellPvs pvs;
   pvs.cell = cell;
-  CellBake bake(device, params, cellFaces(cell), cell_index, hooks);
+  CellBake bake(device, scene, params, cellFaces(cell), cell_index, hooks);
   bake.run();
   bake.addContained(containedTriangles(scene, cell));
   bake.validate();

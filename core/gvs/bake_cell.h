@@ -40,6 +40,10 @@ struct Interrupted {};
 /// Throws Error (wrong usage) that names the parameter that is out of range.
 void checkParams(const BakeParams& params);
 
+/// Throws Error (wrong usage) if no device of that name (of makeDevice) could run the method: raster needs
+/// Vulkan.
+void requireMethodOn(Method method, const std::string& device);
+
 /// Computes the PVS of one cell by params.method on `device`, which holds `scene`: by default GVS++ (Koch and
 /// Wimmer 2021; thesis, algorithms 5.1 and 6.1 to 6.4). cell_index numbers the cell in its bake: it enters
 /// the random shifts only. The naive method is gvs++ on a device of makeNaiveDevice

@@ -1,0 +1,23 @@
+#pragma once
+#include "core/device/vulkan_context.h"
+
+namespace sightline {
+
+/// A device-local image of square layers with a view of all of them; empty by default. Outlives no context.
+class VulkanImage {
+ public:
+  VulkanImage() = default;
+  /// what: for the message when it does not fit. Throws Error.
+  VulkanImage(const VulkanContext& context, VkFormat format, VkImageUsageFlags usage,
+              VkImageAspectFlags aspect, uint32_t resolution, uint32_t layers, const char* what);
+
+  VkImage get() const { return image_.get(); }
+  VkImageView view() const { return view_.get(); }
+
+ private:
+  VulkanMemoryBlock memory_;
+  VulkanHandle<VkImage> image_;
+  VulkanHandle<VkImageView> view_;  // goes first
+};
+
+}  // namespace sightline

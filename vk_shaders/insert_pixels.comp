@@ -1,0 +1,13 @@
+#version 460
+// Inserts the triangle of each sample of a hemicube's images, under the sample's index in the batch.
+#extension GL_GOOGLE_include_directive : require
+#include "vk_shaders/list.glsl"
+#include "core/shared/hemicube.h"
+
+void runItem(uint place) {
+  uint resolution = SL_LAUNCH.raster_resolution;
+  uint image = hemicubeView(place, resolution) * resolution * resolution;
+  uint leaf = Words(SL_LAUNCH.raster_leaves).at[image + hemicubePixel(place, resolution)];
+  if (leaf == kNoTriangle) return;
+  insertHit(kTheSet, Words(SL_LAUNCH.leaf_ids).at[leaf], SL_LAUNCH.raster_first + place);
+}
