@@ -41,8 +41,9 @@ class VulkanDeviceTest : public testing::Test {
     return hits;
   }
 
-  static BakeParams params() {
+  static BakeParams params(Method method = Method::kGvspp) {
     BakeParams p;
+    p.method = method;
     p.n_rand = 30'000;
     p.validation_rays = 10'000;
     p.batch_rays = 1u << 18;
@@ -62,6 +63,9 @@ class VulkanDeviceTest : public testing::Test {
     EXPECT_EQ(a.stats.reverse.rays, b.stats.reverse.rays) << what;
     EXPECT_EQ(a.stats.missing_rays, b.stats.missing_rays) << what;
   }
+
+  void expectRepeatable(const BakeParams& p) const;
+  void expectAsTheReference(const BakeParams& p) const;
 
   const Scene scene_ = generateScene("city", 20'000, 7);
   const ViewCell cell_ = generateCells("city", 20'000, 7).front();
@@ -129,30 +133,44 @@ TEST_F(VulkanDeviceTest, PartsAndTreesDoNotMatter) {
 /// The set stays bit for bit the same on repeated runs, with the hash set, and with ray queries, which
 /// lavapipe answers by the same code.
 TEST_F(VulkanDeviceTest, BakesAreRepeatable) {
+  expectRepeatable(params());
+}
+TEST_F(VulkanDeviceTest, BakesByGvsAreRepeatable) {
+  expectRepeatable(params(Method::kGvs));
+}
+
+void VulkanDeviceTest::expectRepeatable(const BakeParams& p) const {
   const Bvh bvh = buildBvh(scene_.positions, scene_.triangles);
   const auto device = makeDevice("vulkan", scene_, bvh);
-  const CellPvs first = bakeCell(*device, scene_, cell_, 0, params());
+  const CellPvs first = bakeCell(*device, scene_, cell_, 0, p);
   EXPECT_GT(first.triangles.size(), 500u);
   EXPECT_GT(first.stats.border.new_triangles, 0u);
   EXPECT_GT(first.stats.reverse.new_triangles, 0u);
-  expectSame(bakeCell(*device, scene_, cell_, 0, params()), first, "again");
+  expectSame(bakeCell(*device, scene_, cell_, 0, p), first, "again");
   DeviceOptions hash;
   hash.set = SetKind::kHash;
-  expectSame(bakeOn("vulkan", scene_, cell_, params(), hash), first, "hash set");
+  expectSame(bakeOn("vulkan", scene_, cell_, p, hash), first, "hash set");
   const auto devices = listVulkanDevices();
   if (devices.front().name.find("llvmpipe") == std::string::npos) return;
   DeviceOptions queries;
   queries.ray_queries = true;
   for (const uint32_t size : {0u, 5u}) {
     queries.work_group_size = size;
-    expectSame(bakeOn("vulkan", scene_, cell_, params(), queries), first, "ray queries");
+    expectSame(bakeOn("vulkan", scene_, cell_, p, queries), first, "ray queries");
   }
 }
 
 /// What Vulkan finds and the reference does not, or the other way round, is little, and its witnesses hold.
 TEST_F(VulkanDeviceTest, BakesWhatTheReferenceBakes) {
-  const CellPvs pvs = bakeOn("vulkan", scene_, cell_, params());
-  const CellPvs expected = bakeOn("cpu", scene_, cell_, params());
+  expectAsTheReference(params());
+}
+TEST_F(VulkanDeviceTest, BakesByGvsWhatTheReferenceBakes) {
+  expectAsTheReference(params(Method::kGvs));
+}
+
+void VulkanDeviceTest::expectAsTheReference(const BakeParams& p) const {
+  const CellPvs pvs = bakeOn("vulkan", scene_, cell_, p);
+  const CellPvs expected = bakeOn("cpu", scene_, cell_, p);
   const Bvh bvh = buildBvh(scene_.positions, scene_.triangles);
   const CpuTracer reference(scene_, bvh);
   std::vector<uint32_t> difference;
