@@ -8,13 +8,14 @@
 #include <memory>
 #include <optional>
 
+#include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
 #include "core/error.h"
 #include "core/gvs/bake_cell.h"
-#include "core/measure/measure_report.h"
+#include "core/measure/measure_page.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/report/cell_pictures.h"
@@ -28,7 +29,7 @@ namespace sightline {
 namespace {
 
 struct MeasureCommand {
-  std::filesystem::path scene, report, csv, pictures;
+  std::filesystem::path scene, report, csv, html, pictures;
   std::vector<std::filesystem::path> pvs;
   std::vector<std::string> cells;
   std::string device = "opencl";
@@ -175,12 +176,26 @@ void save(const std::filesystem::path& path, const std::string& text) {
   file.commit();
 }
 
+/// The pictures that were drawn, with what they show.
+std::vector<ReportPicture> readPictures(const MeasureCommand& command, const MeasureReport& report) {
+  std::vector<ReportPicture> pictures;
+  for (const MeasuredSet& set : report.sets) {
+    for (const MeasuredCell& cell : set.cells) {
+      for (size_t i = 0; i < cell.pictures.size(); ++i) {
+        const FileBytes bytes = readFile(command.pictures / cell.pictures[i]);
+        pictures.push_back({{bytes.view().begin(), bytes.view().end()}, worstViewCaption(set, cell, i)});
+      }
+    }
+  }
+  return pictures;
+}
+
 void run(const MeasureCommand& command) {
   checkOptions(command.options);
   std::vector<std::filesystem::path> inputs = command.pvs;
   inputs.push_back(command.scene);
-  requireSeparate(std::array{command.report, command.csv}, inputs);
-  for (const auto& output : {command.report, command.csv}) {
+  requireSeparate(std::array{command.report, command.csv, command.html}, inputs);
+  for (const auto& output : {command.report, command.csv, command.html}) {
     if (!output.empty()) OutputFile probe(output);  // fail before the work, not after it
   }
   if (!command.pictures.empty()) makeFolder(command.pictures);
@@ -207,6 +222,8 @@ void run(const MeasureCommand& command) {
   fmt::print("{} rays in {}\n", shortCount(report.rays), shortDuration(report.seconds));
   save(command.report, jsonText(measureJson(report)));
   save(command.csv, measureCsv(report));
+  if (!command.html.empty())
+    measurePage(report, readPictures(command, report), commandLine()).save(command.html);
   if (stop.exitCode() != 0) throw ExitCode{stop.exitCode()};
   const auto past = pastLimits(report, command.max_average, command.max_wrong);
   for (const std::string& line : past) fmt::print("past the limit: {}\n", line);
@@ -232,6 +249,10 @@ void declareFiles(CLI::App& command, MeasureCommand& options) {
   command.add_option("--report", options.report, "write what was found as JSON (docs/report.md)")
       ->type_name("R.json");
   command.add_option("--csv", options.csv, "write it as CSV, a line a cell and file")->type_name("R.csv");
+  command
+      .add_option("--html", options.html,
+                  "write a page with tables, a chart and the pictures, if there are any")
+      ->type_name("R.html");
   command.add_flag("--repair", options.repair, "load the scene as bake --repair did");
 }
 

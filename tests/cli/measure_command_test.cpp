@@ -57,7 +57,8 @@ class MeasureCommandTest : public testing::Test {
 TEST_F(MeasureCommandTest, MeasuresSeveralSetsAtOnce) {
   const std::string command = "measure " + input() + " " + path("poor.pvs") +
                               " --device cpu --views 40 --resolution 60 --report " + path("r.json") +
-                              " --csv " + path("r.csv") + " --pictures " + path("pictures");
+                              " --csv " + path("r.csv") + " --html " + path("r.html") + " --pictures " +
+                              path("pictures");
   expectRun(command, 0, {"40 views of 60 x 60 pixels", "all cells", "poor.pvs", "avg error", "rays in"});
   const auto report = nlohmann::json::parse(std::ifstream(path("r.json")));
   EXPECT_EQ(report["views"], 40);
@@ -77,6 +78,19 @@ TEST_F(MeasureCommandTest, MeasuresSeveralSetsAtOnce) {
       EXPECT_GT(std::filesystem::file_size(path("pictures") + "/" + name), 100u) << name;
     }
   }
+  std::ifstream page(path("r.html"));
+  const std::string html((std::istreambuf_iterator<char>(page)), {});
+  size_t pictures = 0;
+  for (size_t at = 0; (at = html.find("src=\"data:image/png;base64,", at)) != std::string::npos; ++at)
+    ++pictures;
+  size_t drawn = 0;
+  for (const auto& set : report["sets"]) {
+    for (const auto& cell : set["cells"]) drawn += cell["pictures"].size();
+  }
+  EXPECT_EQ(pictures, drawn);
+  EXPECT_NE(html.find("poor.pvs</t"), std::string::npos);
+  EXPECT_NE(html.find("<td>" + poor["cells"][0]["max_wrong"].dump() + "</td>"), std::string::npos);
+
   std::ifstream csv(path("r.csv"));
   std::string line;
   size_t lines = 0;
@@ -100,27 +114,6 @@ TEST_F(MeasureCommandTest, ExitsWith3PastALimit) {
   expectRun(start + "--max-average 1600 --max-wrong 1600", 0, {});
   expectRun(start + "--max-average 1", 3, {"past the limit: ", "wrong pixels a view"});
   expectRun(start + "--max-wrong 1", 3, {"past the limit: ", "in view"});
-}
-
-/// A bake that stops by its target says so in every place, and keeps its promise.
-TEST_F(MeasureCommandTest, AgreesWithTheBoundOfATargetedBake) {
-  const std::string bake =
-      "bake " + path("city.glb") + " --cells " + path("cells.json") + " -o " + path("target.pvs") +
-      " --device cpu --method random --n-rand 20000 --validation-rays 0 --report " + path("target.json");
-  expectRun(bake + " --target-error 1", 2, {"--target-error"});
-  expectRun(bake + " --target-error 0.002", 0, {"error < 0.00", "(95 %)", "target error"});
-  expectRun("info " + path("target.pvs"), 0, {"wrong pixels below 0.002 of all", "error < 0.00"});
-  const auto report = nlohmann::json::parse(std::ifstream(path("target.json")));
-  EXPECT_EQ(report["parameters"]["target_error"], 0.002);
-  for (const auto& cell : report["cells"]) {
-    EXPECT_EQ(cell["stop_reason"], "target error");
-    EXPECT_LT(cell["error_bound_95"], 0.002);
-    EXPECT_GT(cell["error_bound_rays"], 5000);
-  }
-  expectRun("measure " + path("city.glb") + " " + path("target.pvs") +
-                " --device cpu --views 200 --resolution 100 --max-average " +
-                std::to_string(0.002 * 100 * 100),
-            0, {"target.pvs"});
 }
 
 TEST_F(MeasureCommandTest, SaysTheDefaultsOfAProcessor) {

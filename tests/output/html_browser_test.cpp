@@ -4,6 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/report/bake_page.h"
 #include "tests/output/example_pvs.h"
 #include "tests/support/chromium.h"
 #include "tests/support/example_page.h"
@@ -125,6 +126,28 @@ TEST_F(HtmlInBrowser, FitsAPhone) {
   EXPECT_EQ(page["scroll_width"], 390);
   for (const json& width : page["plot_widths"]) EXPECT_TRUE(width > 300 && width < 390) << width;
   EXPECT_EQ(page["wrong"], json::array());
+}
+
+/// The page of a bake, as a reader gets it.
+TEST_F(HtmlInBrowser, ShowsABake) {
+  BakeReport report;
+  report.scene.name = "city.glb";
+  report.scene.triangles = 1000;
+  report.cells = summarize(examplePvs());
+  report.planned_cells = 3;
+  BakePage bake;
+  bake.curves.resize(2);
+  for (uint32_t i = 1; i < 2000; ++i) {
+    bake.curves[0].push_back({0.01 * i, {1000 * i, 500 * i, 0}, {10 + i, i / 2, 0}, 10 + i + i / 2, i / 10});
+  }
+  bake.curves[1] = bake.curves[0];
+  for (const int width : {390, 1280}) {
+    const json page = measure(bakePage(report, bake).html(), width);
+    EXPECT_EQ(page["wrong"], json::array());
+    EXPECT_EQ(page["scroll_width"], width);
+    EXPECT_EQ(page["legends"], (json{2, 2, 2, 2, 2, 2})) << "random and border: reverse found nothing";
+    for (const json& colors : page["colors"]) EXPECT_GE(colors, 3);
+  }
 }
 
 TEST_F(HtmlInBrowser, TheWatchWorks) {

@@ -29,11 +29,14 @@
     return lead === 1 || (decades < 2.5 && (lead === 2 || lead === 5)) ? short(value) : '';
   }
 
-  function axis(title, logarithmic) {
+  // values: along the axis. Whole numbers get no ticks between them.
+  function axis(title, logarithmic, values) {
+    const ticks = {maxRotation: 0, autoSkipPadding: 12, callback: logarithmic ? logTick : short};
+    if (!logarithmic && values.every((value) => !(value % 1))) ticks.precision = 0;
     return {
       type: logarithmic ? 'logarithmic' : 'linear',
       title: {display: true, text: title},
-      ticks: {maxRotation: 0, autoSkipPadding: 12, callback: logarithmic ? logTick : short},
+      ticks,
     };
   }
 
@@ -71,7 +74,7 @@
     return {
       label: series.name, data: series.points, showLine: series.line, borderWidth: 2,
       borderDash: series.dashed ? [6, 4] : [],
-      pointStyle: series.line ? kMarkers[series.color % kMarkers.length] : 'circle',
+      pointStyle: kMarkers[series.color % kMarkers.length], clip: 8,
       pointRadius: (context) => (!series.line ? 5.5 : marked.has(context.dataIndex) ? 3.5 : 0),
       pointBorderWidth: 1.5, pointHitRadius: 8, pointHoverRadius: 6,
     };
@@ -106,6 +109,8 @@
     }
     context.setLineDash([]);
     const options = {pointStyle: kMarkers[series.color % kMarkers.length], radius: 4, borderWidth: 1.5};
+    context.lineWidth = options.borderWidth;
+    if (!series.line) context.strokeStyle = style('--ink');
     Chart.helpers.drawPoint(context, options, 14, 7);
   }
 
@@ -138,6 +143,7 @@
     const table = figure.querySelector('table');
     const all = readSeries(table, logX, logY);
     const [x, y] = Array.from(table.tHead.rows[0].cells, (cell) => cell.textContent);
+    const along = (key) => all.flatMap((series) => series.points.map((point) => point[key]));
     const label = (item) => `${item.dataset.label}: ${short(item.parsed.y)} ${y} at ${short(item.parsed.x)} ${x}`;
     const chart = new Chart(figure.querySelector('.plot canvas'), {
       type: 'line',
@@ -147,7 +153,7 @@
         devicePixelRatio: Math.max(2, window.devicePixelRatio || 1),  // sharp on paper
         interaction: {mode: 'nearest', intersect: false},
         plugins: {legend: {display: false}, tooltip: {callbacks: {title: () => '', label}}},
-        scales: {x: axis(x, logX), y: axis(y, logY)},
+        scales: {x: axis(x, logX, along('x')), y: axis(y, logY, along('y'))},
       },
     });
     const painters = [() => paint(chart, all), ...addLegend(figure.querySelector('.legend'), chart, all)];
