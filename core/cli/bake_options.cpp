@@ -67,6 +67,13 @@ void declareParams(CLI::App& command, BakeParams& params) {
   count("--quiet-iterations", params.quiet_iterations, 1, 1000000, "stop after so many of them in a row");
   count("--max-rays", params.max_rays, 0, 1e18, "stop a cell after so many rays (0: no limit)");
   number("--max-seconds", params.max_seconds, "stop a cell after so many seconds (0: no limit)");
+  command
+      .add_option("--target-error", params.target_error,
+                  "stop a cell when the share of wrong pixels is below E with 95 % confidence, instead of by "
+                  "--threshold (docs/evaluation.md)")
+      ->check(between(kSmallestTargetError, 0.999999))
+      ->type_name("E")
+      ->group(kParamsGroup);
   count("--batch-rays", params.batch_rays, 4096, 1u << 28, "rays of a border or reverse batch at most");
   count("--validation-rays", params.validation_rays, 0, 1e15, "rays that measure what a cell missed");
   command.add_option("--seed", params.seed, "seed of the random rays, 0 to 2^64 - 1")

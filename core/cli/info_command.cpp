@@ -84,6 +84,10 @@ void showParams(const BakeParams& params) {
       fmt::format("fewer than {} new triangles in {} iterations{}{}", params.threshold,
                   params.quiet_iterations, params.max_rays ? fmt::format(", {} rays", params.max_rays) : "",
                   params.max_seconds > 0 ? fmt::format(", {:g} s", params.max_seconds) : ""));
+  if (params.target_error > 0) {
+    row("",
+        fmt::format("instead: wrong pixels below {:g} of all, with 95 % confidence", params.target_error));
+  }
   row("batch", fmt::format("{} rays", params.batch_rays));
   row("validation", fmt::format("{} rays", params.validation_rays));
 }

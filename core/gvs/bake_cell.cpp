@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "core/error.h"
+#include "core/gvs/error_bound.h"
 #include "core/gvs/hemicube.h"
 #include "core/gvs/random_segment.h"
 #include "core/scene/contained.h"
@@ -73,15 +74,22 @@ class CellBake {
     device_.beginCell(faces_, stage_params_);
   }
 
-  /// Everything up to the stop rule.
-  void run() {
+  /// Everything up to the stop rule: T, or the target of `bound` where there is one. member: a byte a
+  /// triangle of the scene, 1 for those that the cell contains.
+  void run(ErrorBound* bound, std::vector<uint8_t> member) {
     uint32_t quiet = 0;
     for (bool more = true; more;) {
       ++stats_.iterations;
       iteration_new_ = 0;
       more = sample() && (!explores() || explore());
       quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
-      if (quiet >= params_.quiet_iterations) more = false;
+      if (bound != nullptr) {  // after a limit, too: to say where the error stands
+        const bool reached = testError(*bound, member);
+        if (reached && more) stats_.stop = StopReason::kTargetError;
+        more = more && !reached;
+      } else if (quiet >= params_.quiet_iterations) {
+        more = false;
+      }
     }
   }
 
@@ -135,6 +143,22 @@ class CellBake {
 
   /// One iteration's samples before any exploration. false: a limit was reached.
   bool sample() { return params_.method == Method::kRaster ? sampleHemicubes() : sampleRandom(); }
+
+  /// Whether the error of what has been found is below the target. Adds to `member` what is new.
+  bool testError(ErrorBound& bound, std::vector<uint8_t>& member) {
+    for (const PvsEntry& entry : device_.readPvs()) member[entry.origin_triangle.w] = 1;
+    validating_ = true;
+    const bool reached = bound.test(
+        [&](std::span<const Ray> rays, std::span<Hit> hits) { device_.traceRays(rays, hits); }, member,
+        [&](uint64_t rays) {
+          stats_.bound_rays = rays;
+          report(kStageRandom);
+        });
+    validating_ = false;
+    stats_.bound_tests = bound.tests();
+    stats_.error_bound = bound.bound();
+    return reached;
+  }
 
   /// Calls launch for the runs of the sequence that cover counts[f] rays of each face, starting at point
   /// `first`; stops early when it returns false.
@@ -257,7 +281,7 @@ class CellBake {
     p.iteration = stats_.iterations;
     p.stage = stage;
     p.validating = validating_;
-    p.rays = rays_ + stats_.validation_rays;
+    p.rays = rays_ + stats_.validation_rays + stats_.bound_rays;
     p.pvs_size = pvs_size_;
     p.new_triangles = iteration_new_;
     p.queued = pvs_size_ - explored_;
@@ -328,15 +352,16 @@ void checkParams(const BakeParams& p) {
   require(p.method <= Method::kNaive, "no such method");
   require(p.raster_resolution >= 16 && p.raster_resolution <= kMaxViewResolution,
           "raster-resolution must be 16 .. 16384");
-  require(p.target_error == 0, "target-error must be 0");
+  require(p.target_error == 0 || (p.target_error >= kSmallestTargetError && p.target_error < 1),
+          "target-error must be 0 (off) or 1e-10 .. 1");
   require(p.n_rand >= 1 && p.n_rand <= 0xfffffffdu, "n-rand must be 1 .. 4294967293");
   require(p.n_abs_edge <= 1000, "n-abs-edge must be 0 .. 1000");
   require(p.n_rs_edge <= 1000, "n-rs-edge must be 0 .. 1000");
   require(p.n_rs_area <= 100'000, "n-rs-area must be 0 .. 100000");
   require(p.batch_rays >= 4096 && p.batch_rays <= 1u << 28, "batch-rays must be 4096 .. 268435456");
   require(p.quiet_iterations >= 1, "quiet-iterations must be at least 1");
-  require(p.threshold >= 1 || p.max_rays > 0 || p.max_seconds > 0,
-          "threshold 0 never ends: give max-rays or max-seconds too");
+  require(p.threshold >= 1 || p.max_rays > 0 || p.max_seconds > 0 || p.target_error > 0,
+          "threshold 0 never ends: give max-rays, max-seconds or target-error too");
   const auto distance = [](float x) { return std::isfinite(x) && x >= 0; };
   require(distance(p.delta_abs) && distance(p.delta_abs_relative) && p.delta_abs + p.delta_abs_relative > 0,
           "delta-abs and delta-abs-relative must be finite, not negative, and one of them above 0");
@@ -357,8 +382,16 @@ CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint3
   CellPvs pvs;
   pvs.cell = cell;
   CellBake bake(device, scene, params, cellFaces(cell), cell_index, hooks);
-  bake.run();
-  bake.addContained(containedTriangles(scene, cell));
+  const std::vector<uint32_t> contained = containedTriangles(scene, cell);
+  if (params.target_error > 0) {
+    ErrorBound bound(cell, cell_index, params.seed, params.target_error);
+    std::vector<uint8_t> member(scene.triangles.size(), 0);
+    for (const uint32_t triangle : contained) member[triangle] = 1;
+    bake.run(&bound, std::move(member));
+  } else {
+    bake.run(nullptr, {});
+  }
+  bake.addContained(contained);
   bake.validate();
   const std::vector<PvsEntry> entries = device.readPvs();
   if (hooks.trace != nullptr) {

@@ -43,6 +43,8 @@ std::string stopReasonName(StopReason reason) {
       return "ray limit";
     case StopReason::kTimeLimit:
       return "time limit";
+    case StopReason::kTargetError:
+      return "target error";
   }
   return "unknown";
 }

@@ -29,7 +29,7 @@ std::vector<CellSummary> summarize(const PvsFile& pvs);
 /// XXH3 of all sets: equal for two bakes that found the same, whatever the device and the time they took.
 uint64_t hashResult(std::span<const CellSummary> cells);
 
-/// "converged", "ray limit" or "time limit".
+/// "converged", "ray limit", "time limit" or "target error".
 std::string stopReasonName(StopReason reason);
 
 }  // namespace sightline

@@ -54,16 +54,31 @@ double lowerTail(double k, double n, double p) {
 }  // namespace
 
 double missingUpperBound(uint64_t missing, uint64_t rays) {
+  return missingUpperBound(missing, rays, kTail);
+}
+
+double missingUpperBound(uint64_t missing, uint64_t rays, double tail) {
   if (missing >= rays) return 1;
   const double n = double(rays), k = double(missing);
-  if (missing == 0) return -std::expm1(std::log(kTail) / n);  // 1 - 0.025^(1/n)
+  if (missing == 0) return -std::expm1(std::log(tail) / n);  // 1 - tail^(1/n)
   double low = k / n, high = 1;
   while (true) {
     // Small shares need their digits too: halve the ratio while it is large.
     const double middle = high > 2 * low ? std::sqrt(low * high) : 0.5 * (low + high);
     if (middle <= low || middle >= high) return high;
-    (lowerTail(k, n, middle) > kTail ? low : high) = middle;
+    (lowerTail(k, n, middle) > tail ? low : high) = middle;
   }
+}
+
+uint64_t raysForBound(uint64_t missing, double share, double tail) {
+  const auto proves = [&](uint64_t rays) { return missingUpperBound(missing, rays, tail) < share; };
+  uint64_t low = missing, high = missing + 1;  // of `missing` rays all miss: no bound
+  while (!proves(high)) low = high, high *= 2;
+  while (high - low > 1) {
+    const uint64_t middle = low + (high - low) / 2;
+    (proves(middle) ? high : low) = middle;
+  }
+  return high;
 }
 
 }  // namespace sightline

@@ -31,9 +31,12 @@ struct BakeParams {
   uint64_t validation_rays = 10'000'000;  ///< fresh random rays after each cell that measure the miss rate
   uint64_t seed = 1;
   uint32_t raster_resolution = 1000;  ///< method raster only: pixels along an edge of a hemicube's front side
-  double target_error = 0;  ///< stop a cell at this share of wrong pixels (95 % upper bound; 0: do not ask)
+  double target_error = 0;  ///< stop a cell at this share of wrong pixels (95 % upper bound), in place of the
+                            ///< threshold; 0: off, else kSmallestTargetError up to 1
   bool operator==(const BakeParams&) const = default;
 };
+
+inline constexpr double kSmallestTargetError = 1e-10;
 
 /// Counts of one stage of one cell.
 struct StageStats {
@@ -43,7 +46,7 @@ struct StageStats {
 };
 
 /// Why a cell's bake ended.
-enum class StopReason : uint32_t { kConverged = 0, kRayLimit = 1, kTimeLimit = 2 };
+enum class StopReason : uint32_t { kConverged = 0, kRayLimit = 1, kTimeLimit = 2, kTargetError = 3 };
 
 /// What a cell's bake did.
 struct CellStats {
@@ -53,6 +56,9 @@ struct CellStats {
   StopReason stop = StopReason::kConverged;
   uint64_t validation_rays = 0;  ///< fresh random rays
   uint64_t missing_rays = 0;     ///< of them: hit a triangle outside the set
+  uint64_t bound_rays = 0;       ///< fresh rays of random pixels that tested the error (target_error)
+  uint32_t bound_tests = 0;      ///< in so many tests
+  double error_bound = 1;        ///< upper bound of the share of wrong pixels, 95 % confidence; 1: not tested
   double seconds = 0;            ///< whole cell, validation included
   uint64_t peak_device_bytes = 0;
 };
@@ -60,6 +66,12 @@ struct CellStats {
 /// Upper end of the two-sided 95 % interval (Clopper and Pearson 1934) of the share missing / rays, 0..1.
 /// rays = 0 gives 1.
 double missingUpperBound(uint64_t missing, uint64_t rays);
+
+/// Upper end of the one-sided interval that may be wrong with probability `tail`, above 0 and below 0.5.
+double missingUpperBound(uint64_t missing, uint64_t rays, double tail);
+
+/// The fewest rays of which `missing` may miss for that bound to be below `share`, above 0 and below 1.
+uint64_t raysForBound(uint64_t missing, double share, double tail);
 
 /// A ray that hits its triangle first.
 struct Witness {

@@ -72,6 +72,9 @@ void writeStats(ByteWriter& out, const CellStats& stats) {
   for (uint64_t value : {stats.validation_rays, stats.missing_rays, stats.peak_device_bytes}) {
     out.number(value);
   }
+  out.number(stats.bound_rays);
+  out.number(stats.bound_tests);
+  out.number(stats.error_bound);
   out.number(stats.seconds);
 }
 
@@ -85,11 +88,14 @@ CellStats readStats(ByteReader& in) {
   stats.contained_triangles = in.number<uint64_t>();
   stats.iterations = in.number<uint32_t>();
   const auto stop = in.number<uint32_t>();
-  require(stop <= uint32_t(StopReason::kTimeLimit), "unknown stop reason");
+  require(stop <= uint32_t(StopReason::kTargetError), "unknown stop reason");
   stats.stop = StopReason(stop);
   for (uint64_t* value : {&stats.validation_rays, &stats.missing_rays, &stats.peak_device_bytes}) {
     *value = in.number<uint64_t>();
   }
+  stats.bound_rays = in.number<uint64_t>();
+  stats.bound_tests = in.number<uint32_t>();
+  stats.error_bound = in.number<double>();
   stats.seconds = in.number<double>();
   return stats;
 }

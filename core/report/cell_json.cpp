@@ -39,6 +39,9 @@ void addCellStatistics(Json& json, const CellSummary& cell, uint64_t triangles) 
   json["missing_rays"] = stats.missing_rays;
   json["missing_share"] = cell.missingShare();
   json["missing_upper_bound_95"] = cell.missingBound();
+  json["error_bound_95"] = stats.error_bound;
+  json["error_bound_rays"] = stats.bound_rays;
+  json["error_bound_tests"] = stats.bound_tests;
   json["peak_device_bytes"] = stats.peak_device_bytes;
 }
 

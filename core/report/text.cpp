@@ -62,6 +62,7 @@ std::string cellTable(std::span<const CellSummary> cells, uint32_t triangle_coun
     table += fmt::format("  {:>10}  {:>5.2f} %  {:>8}  {:>7.2f}  {:>10}  {:>19}  {:>8.1f}", cell.pvs_size,
                          share, shortCount(cell.rays()), cell.mraysPerSecond(), cell.stats.iterations,
                          missingText(cell), cell.stats.seconds);
+    if (cell.stats.bound_tests > 0) table += fmt::format("  error < {:.3g} (95 %)", cell.stats.error_bound);
     if (cell.stats.stop != StopReason::kConverged) table += "  " + stopReasonName(cell.stats.stop);
     table += '\n';
   }

@@ -116,6 +116,27 @@ TEST_F(MeasureCommandTest, ExitsWith3PastALimit) {
   expectRun(start + "--max-wrong 1", 3, {"past the limit: ", "in view"});
 }
 
+/// A bake that stops by its target says so in every place, and keeps its promise.
+TEST_F(MeasureCommandTest, AgreesWithTheBoundOfATargetedBake) {
+  const std::string bake =
+      "bake " + path("city.glb") + " --cells " + path("cells.json") + " -o " + path("target.pvs") +
+      " --device cpu --method random --n-rand 20000 --validation-rays 0 --report " + path("target.json");
+  expectRun(bake + " --target-error 1", 2, {"--target-error"});
+  expectRun(bake + " --target-error 0.002", 0, {"error < 0.00", "(95 %)", "target error"});
+  expectRun("info " + path("target.pvs"), 0, {"wrong pixels below 0.002 of all", "error < 0.00"});
+  const auto report = nlohmann::json::parse(std::ifstream(path("target.json")));
+  EXPECT_EQ(report["parameters"]["target_error"], 0.002);
+  for (const auto& cell : report["cells"]) {
+    EXPECT_EQ(cell["stop_reason"], "target error");
+    EXPECT_LT(cell["error_bound_95"], 0.002);
+    EXPECT_GT(cell["error_bound_rays"], 5000);
+  }
+  expectRun("measure " + path("city.glb") + " " + path("target.pvs") +
+                " --device cpu --views 200 --resolution 100 --max-average " +
+                std::to_string(0.002 * 100 * 100),
+            0, {"target.pvs"});
+}
+
 TEST_F(MeasureCommandTest, SaysTheDefaultsOfAProcessor) {
   expectRun("measure " + input() + " --device cpu --cell 0", 0,
             {"200 views of 250 x 250 pixels a cell (the defaults of a processor)"});

@@ -31,6 +31,9 @@ inline CellPvs exampleCell(const ViewCell& cell, std::vector<uint32_t> ids, bool
   pvs.stats.stop = StopReason::kRayLimit;
   pvs.stats.validation_rays = 500;
   pvs.stats.missing_rays = 1;
+  pvs.stats.bound_rays = 1u << 20;
+  pvs.stats.bound_tests = 3;
+  pvs.stats.error_bound = 0.0625;
   pvs.stats.seconds = 1.5;
   pvs.stats.peak_device_bytes = 1 << 20;
   pvs.triangles = std::move(ids);

@@ -61,5 +61,29 @@ TEST(MissingUpperBound, GrowsWithTheMissingAndStaysAboveTheShare) {
   EXPECT_NEAR(missingUpperBound(5'000'000'000ull, 10'000'000'000ull) - 0.5, 1.959964 * 0.5e-5, 1e-9);
 }
 
+/// One-sided bounds: the two-sided one at half its tail; 0 of n in closed form.
+TEST(MissingBound, OneSidedAtAnyTail) {
+  EXPECT_EQ(missingUpperBound(7, 1000, 0.025), missingUpperBound(7, 1000));
+  EXPECT_NEAR(missingUpperBound(0, 1000, 0.05), 1 - std::pow(0.05, 1e-3), 1e-15);
+  EXPECT_LT(missingUpperBound(7, 1000, 0.05), missingUpperBound(7, 1000, 0.01));
+}
+
+/// With so many rays the bound is below the share, with one less it is not.
+TEST(MissingBound, RaysForABound) {
+  for (const uint64_t missing : {0u, 1u, 8u, 100u}) {
+    for (const double share : {0.9, 0.3, 1e-2, 1e-6}) {
+      for (const double tail : {0.03, 1e-3, 1e-8}) {
+        const uint64_t rays = raysForBound(missing, share, tail);
+        EXPECT_LT(missingUpperBound(missing, rays, tail), share)
+            << missing << " at " << share << ", " << tail;
+        EXPECT_GE(missingUpperBound(missing, rays - 1, tail), share)
+            << missing << " at " << share << ", " << tail;
+      }
+    }
+  }
+  // Poisson: exp(-x) = 0.05.
+  EXPECT_NEAR(double(raysForBound(0, 1e-6, 0.05)), 2.9957e6, 100);
+}
+
 }  // namespace
 }  // namespace sightline

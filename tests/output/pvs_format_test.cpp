@@ -112,6 +112,9 @@ void checkStats(Cursor& cell, const CellStats& want) {
   for (uint64_t value : {want.validation_rays, want.missing_rays, want.peak_device_bytes}) {
     EXPECT_EQ(cell.u64(), value);
   }
+  EXPECT_EQ(cell.u64(), want.bound_rays);
+  EXPECT_EQ(cell.u32(), want.bound_tests);
+  EXPECT_EQ(cell.f64(), want.error_bound);
   EXPECT_EQ(cell.f64(), want.seconds);
 }
 

@@ -74,6 +74,9 @@ TEST(Report, SaysWhatWasDone) {
   EXPECT_EQ(cell["stop_reason"], "ray limit");
   EXPECT_EQ(cell["missing_share"], 0.002);
   EXPECT_EQ(cell["missing_upper_bound_95"], missingUpperBound(1, 500));
+  EXPECT_EQ(cell["error_bound_95"], 0.0625);
+  EXPECT_EQ(cell["error_bound_rays"], 1u << 20);
+  EXPECT_EQ(cell["error_bound_tests"], 3);
 }
 
 TEST(Report, WithoutADeviceItSaysNull) {
@@ -100,7 +103,7 @@ TEST(Report, EveryKeyIsDocumentedAndEveryDocumentedKeyIsThere) {
   collectWords("## `sightline bake --report R.json`", documented);
   collectWords("## `sightline export --format json`", documented);
   // Words in backquotes that are no keys: commands and values.
-  for (const char* word : {"--scene", "array", "hash", "converged", "ray limit", "time limit"}) {
+  for (const char* word : {"--scene", "array", "hash", "converged", "ray limit", "time limit", "target error"}) {
     EXPECT_EQ(documented.count(word), 1u) << word;
     if (std::string(word) != "hash") documented.erase(word);
   }

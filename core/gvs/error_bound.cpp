@@ -1,0 +1,73 @@
+// Based on: C. Clopper and E. Pearson 1934 (the bound of one test); alpha spending over repeated looks after
+// K. Lan and D. DeMets, "Discrete sequential boundaries for clinical trials", Biometrika 1983, by the union
+// bound, since each test has rays of its own.
+#include "core/gvs/error_bound.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+
+#include "core/pvs/pvs.h"
+#include "core/splitmix.h"
+
+namespace sightline {
+namespace {
+
+constexpr double kConfidence = 0.95;
+/// Keeps the rays apart from those of the bake and from the views of measure with the same seed.
+constexpr uint64_t kBoundKey = 0x626f756e64;  // "bound"
+/// Random numbers a ray: four for the view, two for the pixel.
+constexpr uint64_t kNumbers = 6;
+/// Rays of the first launch of a test, and of each at most: a test that fails soon costs little.
+constexpr uint64_t kFirstLaunch = 1u << 14, kLargestLaunch = 1u << 20;
+
+}  // namespace
+
+ErrorBound::ErrorBound(const ViewCell& cell, uint32_t cell_index, uint64_t seed, double target)
+    : views_(cell), key_(splitmix(splitmix(splitmix(seed) ^ cell_index) ^ kBoundKey)), target_(target) {}
+
+double ErrorBound::alpha(uint32_t k) {
+  const double step = std::numbers::pi * k;
+  return (1 - kConfidence) * 6 / (step * step);
+}
+
+uint64_t ErrorBound::raysOfTest(uint32_t k, double target) {
+  return raysForBound(kAllowedMisses, target, alpha(k));
+}
+
+Ray ErrorBound::ray(uint64_t index) const {
+  std::array<double, kNumbers> numbers;
+  for (uint64_t i = 0; i < kNumbers; ++i) {  // of one splitmix64 sequence, by their place in it
+    const uint64_t bits = mixBits(key_ + (index * kNumbers + i + 1) * kSplitmixStep);
+    numbers[i] = double(bits >> 11) * 0x1p-53;
+  }
+  const ViewFrame frame = views_.at({numbers[0], numbers[1], numbers[2], numbers[3]});
+  return viewRay(frame, uint32_t(numbers[4] * kResolution), uint32_t(numbers[5] * kResolution), kResolution);
+}
+
+bool ErrorBound::test(const Trace& trace, std::span<const uint8_t> member,
+                      const std::function<void(uint64_t)>& between) {
+  const uint64_t due = raysOfTest(++tests_, target_);
+  uint64_t traced = 0, missed = 0;
+  for (uint64_t launch = kFirstLaunch; traced < due && missed <= kAllowedMisses;
+       launch = std::min(2 * launch, kLargestLaunch)) {
+    const uint64_t count = std::min(launch, due - traced);
+    batch_.resize(count);
+    hits_.resize(count);
+    tbb::parallel_for(uint64_t(0), count, [&](uint64_t i) { batch_[i] = ray(rays_ + i); });
+    trace(batch_, hits_);
+    for (const Hit& hit : hits_) missed += hit.triangle != kNoTriangle && member[hit.triangle] == 0;
+    traced += count;
+    rays_ += count;
+    if (between) between(rays_);
+  }
+  // Ending early does not spoil the bound: it takes more misses than are allowed, so whoever would be wrong
+  // about a share at that end would have been wrong at the first launch after which the bound of nine misses
+  // is below that share, too: one event, of probability alpha at most.
+  bound_ = std::min(bound_, missingUpperBound(missed, traced, alpha(tests_)));
+  return traced == due && missed <= kAllowedMisses;
+}
+
+}  // namespace sightline
