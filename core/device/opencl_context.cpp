@@ -6,6 +6,7 @@
 
 #include "cl_kernels/program_source.h"
 #include "core/device/opencl_devices.h"
+#include "core/device/parallel_copy.h"
 #include "core/error.h"
 
 namespace sightline {
@@ -64,6 +65,9 @@ std::string buildLog(cl_program program, cl_device_id device) {
   while (!log.empty() && (log.back() == '\0' || log.back() == '\n')) log.pop_back();
   return log;
 }
+
+/// Of readFast at a time.
+constexpr uint64_t kPinnedBytes = 64u << 20;
 
 double mebibytes(uint64_t bytes) {
   return double(bytes) / 1048576.0;
@@ -173,6 +177,24 @@ void OpenClContext::read(const ClBuffer& buffer, void* target, uint64_t bytes, u
   checkCl(
       clEnqueueReadBuffer(queue_.get(), buffer.get(), CL_TRUE, offset, bytes, target, 0, nullptr, nullptr),
       "clEnqueueReadBuffer");
+}
+
+void OpenClContext::readFast(const ClBuffer& buffer, void* target, uint64_t bytes) {
+  if (is_cpu_) return read(buffer, target, bytes);
+  cl_int code = CL_SUCCESS;
+  if (pinned_address_ == nullptr) {  // stays mapped as long as the context lives
+    pinned_ = ClHandle<cl_mem, clReleaseMemObject>(clCreateBuffer(
+        context_.get(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, kPinnedBytes, nullptr, &code));
+    checkCl(code, "clCreateBuffer");
+    pinned_address_ = clEnqueueMapBuffer(queue_.get(), pinned_.get(), CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0,
+                                         kPinnedBytes, 0, nullptr, nullptr, &code);
+    checkCl(code, "clEnqueueMapBuffer");
+  }
+  for (uint64_t first = 0; first < bytes; first += kPinnedBytes) {
+    const uint64_t count = std::min(kPinnedBytes, bytes - first);
+    read(buffer, pinned_address_, count, first);
+    parallelCopy(static_cast<char*>(target) + first, pinned_address_, count);
+  }
 }
 
 void OpenClContext::fill(const ClBuffer& buffer, uint32_t value, uint64_t bytes, uint64_t offset) {

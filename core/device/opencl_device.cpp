@@ -178,7 +178,7 @@ class OpenClDevice final : public Device {
       const auto items = static_cast<uint32_t>(count) * viewItems(resolution);
       context_.launch(views_kernel_, (items + lanes_ - 1) / lanes_, local_, scene_.nodes, scene_.triangles,
                       scene_.reach, views_.buffer, resolution, items, view_triangles_.buffer);
-      context_.read(view_triangles_.buffer, &triangles[first * view_pixels], pixels * 4);
+      context_.readFast(view_triangles_.buffer, &triangles[first * view_pixels], pixels * 4);
     }
   }
 

@@ -1,9 +1,9 @@
 #include "core/device/vulkan_device.h"
 
 #include <algorithm>
-#include <cstring>
 #include <optional>
 
+#include "core/device/parallel_copy.h"
 #include "core/device/vulkan_raster.h"
 #include "core/device/vulkan_scene.h"
 #include "core/device/vulkan_set.h"
@@ -291,7 +291,7 @@ class VulkanDevice final : public Device {
       const uint64_t count = std::min(bytes - first, kReadbackBytes);
       runner_.commands.copy(buffer, readback_, count, first);
       runner_.takeCounts();
-      std::memcpy(static_cast<char*>(target) + first, readback_.mapped(), count);
+      parallelCopy(static_cast<char*>(target) + first, readback_.mapped(), count);
     }
   }
 

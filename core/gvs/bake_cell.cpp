@@ -22,6 +22,10 @@ namespace {
 /// Rays of one random launch at most: a second or so on a slow device, for progress and interruption.
 constexpr uint32_t kRandomLaunchRays = 1u << 22;
 
+/// After a test of the error, so many times its rays are traced before the next one: tests take a third of
+/// all rays at most. Those that fail soon, while the error is large, hold up nothing.
+constexpr uint64_t kRaysBetweenTests = 2;
+
 /// Random shifts of the four Halton bases, each below its period. use: 0 sampling, 1 validation.
 uvec4 haltonShifts(uint64_t seed, uint32_t cell_index, uint32_t use) {
   const uint64_t key = splitmix(splitmix(splitmix(seed) ^ cell_index) ^ use);
@@ -83,8 +87,9 @@ class CellBake {
       iteration_new_ = 0;
       more = sample() && (!explores() || explore());
       quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
-      if (bound != nullptr) {  // after a limit, too: to say where the error stands
-        const bool reached = testError(*bound, member);
+      if (bound != nullptr) {
+        const bool due = rays_ >= next_test_ || !more;  // after a limit, too: to say where the error stands
+        const bool reached = due && testError(*bound, member);
         if (reached && more) stats_.stop = StopReason::kTargetError;
         more = more && !reached;
       } else if (quiet >= params_.quiet_iterations) {
@@ -148,6 +153,7 @@ class CellBake {
   bool testError(ErrorBound& bound, std::vector<uint8_t>& member) {
     for (const PvsEntry& entry : device_.readPvs()) member[entry.origin_triangle.w] = 1;
     validating_ = true;
+    const uint64_t before = bound.rays();
     const bool reached = bound.test(
         [&](std::span<const Ray> rays, std::span<Hit> hits) { device_.traceRays(rays, hits); }, member,
         [&](uint64_t rays) {
@@ -155,6 +161,7 @@ class CellBake {
           report(kStageRandom);
         });
     validating_ = false;
+    next_test_ = rays_ + kRaysBetweenTests * (bound.rays() - before);
     stats_.bound_tests = bound.tests();
     stats_.error_bound = bound.bound();
     return reached;
@@ -321,6 +328,7 @@ class CellBake {
   uint32_t in_work_ = 0;       ///< entries after them whose border rays have been traced
   uint64_t reverse_left_ = 0;  ///< reverse rays of these still to trace
   uint32_t iteration_new_ = 0;
+  uint64_t next_test_ = 0;  ///< rays traced when the error is next tested against the target
   bool validating_ = false;
 };
 

@@ -4,10 +4,12 @@
 #include "core/gvs/error_bound.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/task_group.h>
 
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <utility>
 
 #include "core/pvs/pvs.h"
 #include "core/splitmix.h"
@@ -47,20 +49,34 @@ Ray ErrorBound::ray(uint64_t index) const {
   return viewRay(frame, uint32_t(numbers[4] * kResolution), uint32_t(numbers[5] * kResolution), kResolution);
 }
 
+void ErrorBound::makeRays(std::vector<Ray>& rays, uint64_t first, uint64_t count) const {
+  rays.resize(count);
+  tbb::parallel_for(uint64_t(0), count, [&](uint64_t i) { rays[i] = ray(first + i); });
+}
+
 bool ErrorBound::test(const Trace& trace, std::span<const uint8_t> member,
                       const std::function<void(uint64_t)>& between) {
   const uint64_t due = raysOfTest(++tests_, target_);
   uint64_t traced = 0, missed = 0;
-  for (uint64_t launch = kFirstLaunch; traced < due && missed <= kAllowedMisses;
-       launch = std::min(2 * launch, kLargestLaunch)) {
-    const uint64_t count = std::min(launch, due - traced);
-    batch_.resize(count);
-    hits_.resize(count);
-    tbb::parallel_for(uint64_t(0), count, [&](uint64_t i) { batch_[i] = ray(rays_ + i); });
-    trace(batch_, hits_);
+  uint64_t launch = kFirstLaunch;
+  makeRays(batch_, rays_, std::min(launch, due));
+  while (traced < due && missed <= kAllowedMisses) {
+    hits_.resize(batch_.size());
+    traced += batch_.size();
+    rays_ += batch_.size();
+    launch = std::min(2 * launch, kLargestLaunch);
+    // The next rays are made while the device traces these.
+    tbb::task_group making;
+    making.run([&, count = std::min(launch, due - traced)] { makeRays(next_batch_, rays_, count); });
+    try {
+      trace(batch_, hits_);
+    } catch (...) {
+      making.wait();
+      throw;
+    }
+    making.wait();
+    std::swap(batch_, next_batch_);
     for (const Hit& hit : hits_) missed += hit.triangle != kNoTriangle && member[hit.triangle] == 0;
-    traced += count;
-    rays_ += count;
     if (between) between(rays_);
   }
   // Ending early does not spoil the bound: it takes more misses than are allowed, so whoever would be wrong

@@ -49,6 +49,7 @@ class ErrorBound {
 
  private:
   Ray ray(uint64_t index) const;
+  void makeRays(std::vector<Ray>& rays, uint64_t first, uint64_t count) const;
 
   CellViews views_;
   uint64_t key_;
@@ -56,7 +57,7 @@ class ErrorBound {
   double bound_ = 1;
   uint64_t rays_ = 0;  ///< also the index of the next ray: none comes twice
   uint32_t tests_ = 0;
-  std::vector<Ray> batch_;
+  std::vector<Ray> batch_, next_batch_;
   std::vector<Hit> hits_;
 };
 

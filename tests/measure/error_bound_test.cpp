@@ -153,7 +153,7 @@ TEST(TargetError, HoldsItsPromiseOverManySeeds) {
     ASSERT_EQ(pvs.stats.stop, StopReason::kTargetError);
     ASSERT_LT(pvs.stats.error_bound, params.target_error);
     ASSERT_GT(pvs.stats.iterations, 1u);
-    ASSERT_EQ(pvs.stats.bound_tests, pvs.stats.iterations);
+    ASSERT_LE(pvs.stats.bound_tests, pvs.stats.iterations);
     ASSERT_GE(pvs.stats.bound_rays, ErrorBound::raysOfTest(pvs.stats.bound_tests, params.target_error));
     sets.push_back(rankedSet(pvs.triangles, uint32_t(scene.triangles.size())));
     bounds.push_back(pvs.stats.error_bound);
