@@ -1,5 +1,5 @@
 #version 460
-// The triangles of the scene as a hemicube sees them, one image a view: three vertices a leaf, without an index.
+// The triangles of the scene as a view of a hemicube sees them: three vertices a leaf, without an index.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_multiview : require
 #include "vk_shaders/sampling.glsl"
@@ -12,7 +12,7 @@ out gl_PerVertex {
 };
 
 void main() {
-  leaf_of_vertex = first_item + uint(gl_VertexIndex) / 3u;
+  leaf_of_vertex = uint(gl_VertexIndex) / 3u;
   Views views = Views(SL_LAUNCH.hemicube);
   ViewFrame view = views.at[gl_ViewIndex];
   vec3 corner = sub3(leafCorner(leaf_of_vertex, uint(gl_VertexIndex) % 3u), xyz3(view.origin));

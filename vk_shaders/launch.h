@@ -17,6 +17,10 @@ SL_CONST uint kOverflowCounter = 257u;  ///< not 0: the hash set was full
 SL_CONST uint kListCounter = 258u;      ///< bits set in `words`, by sum_blocks
 SL_CONST uint kCounterWords = 259u;
 
+/// Neighbouring leaves that are drawn or left out together. Smaller ones fit a view's edge better, but a draw
+/// costs even where it is empty.
+SL_CONST uint kChunkTriangles = 2048u;
+
 SL_STRUCT(VulkanLaunch) {
   StageParams params;
   RandomSegment segment;
@@ -52,6 +56,8 @@ SL_STRUCT(VulkanLaunch) {
   uint64 items_before;   ///< discontinuities of the cell before those of the last border launch
   uint64 hemicube;       ///< ViewFrame[5] of the hemicube that is drawn
   uint64 hemicubes;      ///< ViewFrame[5] a hemicube of the batch that is collected; 0: it was traced
+  uint64 chunk_bounds;   ///< float[6] a chunk: the box around it
+  uint64 draws;          ///< VkDrawIndirectCommand[] a view of a chunk each
   uint64 raster_leaves;  ///< uint[] a pixel of the hemicube's images: leaf or kNoTriangle
   uint capacity;         ///< of the hash set; 0: array
   uint old_capacity;
@@ -66,7 +72,9 @@ SL_STRUCT(VulkanLaunch) {
   uint level;              ///< of trace_gvs_border
   uint raster_resolution;  ///< of a hemicube's images
   uint raster_first;       ///< index in the batch of the hemicube's first sample
-  float raster_near;       ///< distance of the near plane
+  uint chunk_count;
+  uint triangle_count;  ///< of the scene
+  float raster_near;    ///< distance of the near plane
 };
 
 SL_NAMESPACE_END

@@ -69,7 +69,8 @@ namespace sightline {
   X(vkCreateGraphicsPipelines)                  \
   X(vkCmdBeginRenderPass)                       \
   X(vkCmdEndRenderPass)                         \
-  X(vkCmdDraw)                                  \
+  X(vkCmdNextSubpass)                           \
+  X(vkCmdDrawIndirect)                          \
   X(vkCmdCopyImageToBuffer)                     \
   X(vkCreateAccelerationStructureKHR)           \
   X(vkDestroyAccelerationStructureKHR)          \

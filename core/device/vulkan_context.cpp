@@ -79,6 +79,7 @@ VulkanContext::VulkanContext(const std::string& selector, bool ray_queries, uint
                                   ? "no queue for graphics"
                               : !abilities.multiview      ? "no images of several views (multiview)"
                               : !abilities.clip_distances ? "no clip distances in shaders"
+                              : !abilities.multi_draw     ? "no lists of draws (multiDrawIndirect)"
                                                           : "";
   why_no_raster_ = lacking;
   api_.vkGetPhysicalDeviceMemoryProperties(choice_.physical, &memory_);
@@ -114,7 +115,7 @@ void VulkanContext::createDevice() {
   core.pNext = &views;
   auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.features.shaderInt64 = features.features.shaderFloat64 = VK_TRUE;
-  features.features.shaderClipDistance = why_no_raster_.empty();
+  features.features.shaderClipDistance = features.features.multiDrawIndirect = why_no_raster_.empty();
   features.pNext = &core;
 
   const char* extensions[] = {
@@ -161,6 +162,7 @@ void VulkanContext::readLimits() {
   const uint64_t width = uint64_t(general.maxComputeWorkGroupCount[0]) * general.maxComputeWorkGroupSize[0];
   limits_.launch_rays =
       static_cast<uint32_t>(std::min<uint64_t>(pipelines.maxRayDispatchInvocationCount, width));
+  limits_.draws = general.maxDrawIndirectCount;
   limits_.image_side =
       std::min({general.maxImageDimension2D, general.maxFramebufferWidth, general.maxFramebufferHeight});
   limits_.handle_bytes = pipelines.shaderGroupHandleSize;
@@ -231,6 +233,7 @@ VulkanBuffer VulkanContext::buffer(uint64_t bytes, const char* what, VulkanMemor
   info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   if (memory == VulkanMemory::kDevice) {
     info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
+                  VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                   VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR |
                   VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
     if (uses_pipelines_) info.usage |= VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR;

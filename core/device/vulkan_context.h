@@ -90,6 +90,7 @@ struct VulkanLimits {
   uint32_t scratch_alignment = 0;
   uint32_t launch_rays = 0;      ///< of one trace command
   uint32_t launch_groups = 0;    ///< of one dispatch
+  uint32_t draws = 0;            ///< of one list
   uint32_t image_side = 0;       ///< pixels of an image that can be drawn into
   uint32_t handle_bytes = 0;     ///< shader group handle
   uint32_t table_alignment = 0;  ///< of the parts of a shader binding table

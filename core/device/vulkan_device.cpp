@@ -108,16 +108,15 @@ class VulkanDevice final : public Device {
     if (!raster_ || raster_->resolution() != resolution) {
       runner_.commands.finish();
       raster_.reset();
-      raster_.emplace(context_, resolution);
+      raster_.emplace(context_, runner_, resolution, triangle_count_);
     }
     const uint32_t samples = hemicubeSamples(resolution);
     reserve(hemicube_, launch_.hemicube, hemicube.size_bytes(), "views of a hemicube");
     updateInPieces(hemicube_, hemicube.data(), hemicube.size());
-    launch_.raster_leaves = raster_->leaves().address();
     launch_.raster_resolution = resolution;
     launch_.raster_first = static_cast<uint32_t>(hemicubes_.size() / kHemicubeViews * samples + 1);
     launch_.raster_near = near_distance;
-    raster_->record(runner_.commands, runner_.recordLaunch(), triangle_count_);
+    raster_->draw();
     traceUntilItFits([&] { runner_.run(pixels_, samples); });
     hemicubes_.insert(hemicubes_.end(), hemicube.begin(), hemicube.end());
     rays_ += samples;

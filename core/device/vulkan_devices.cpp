@@ -56,6 +56,7 @@ VulkanAbilities abilitiesOf(const VulkanApi& api, VkPhysicalDevice device, uint3
   abilities.int64 = features.features.shaderInt64;
   abilities.float64 = features.features.shaderFloat64;
   abilities.multiview = views.multiview;
+  abilities.multi_draw = features.features.multiDrawIndirect;
   abilities.clip_distances = features.features.shaderClipDistance;
   return abilities;
 }

@@ -22,6 +22,7 @@ struct VulkanAbilities {
   // Needed by rasterising alone.
   bool multiview = false;       ///< several images from one draw
   bool clip_distances = false;  ///< in shaders
+  bool multi_draw = false;      ///< lists of draws in a buffer
 };
 
 /// Why a device cannot trace, in one line; empty: it can.

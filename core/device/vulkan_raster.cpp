@@ -3,18 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <vector>
 
 #include "core/device/vulkan_stage.h"
 #include "core/error.h"
-#include "core/shared/hemicube.h"
 
 namespace sightline {
 namespace {
 
 constexpr VkFormat kIdFormat = VK_FORMAT_R32_UINT, kDepthFormat = VK_FORMAT_D32_SFLOAT;
-constexpr uint32_t kViewMask = (1u << kHemicubeViews) - 1;
-/// Triangles of one draw: three vertices each are far below what drivers count in 32 bits.
-constexpr uint32_t kDrawTriangles = 1u << 24;
+/// A view of its own in each subpass.
+constexpr uint32_t kViewMasks[] = {1, 2, 4, 8, 16};
+static_assert(std::size(kViewMasks) == kHemicubeViews);
 
 VkAttachmentDescription attachment(VkFormat format, VkAttachmentStoreOp store, VkImageLayout layout) {
   VkAttachmentDescription description{};
@@ -29,7 +30,8 @@ VkAttachmentDescription attachment(VkFormat format, VkAttachmentStoreOp store, V
   return description;
 }
 
-/// Around the pass: after all that came before, and before all that follows.
+/// Around the pass: after all that came before, and before all that follows. Within it one view after the
+/// other: each has layers of its own, but the images are the same.
 VkSubpassDependency dependency(uint32_t from, uint32_t to) {
   constexpr VkPipelineStageFlags kTests =
       VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT | VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
@@ -42,18 +44,19 @@ VkSubpassDependency dependency(uint32_t from, uint32_t to) {
   VkSubpassDependency result{};
   result.srcSubpass = from;
   result.dstSubpass = to;
-  const bool before = from == VK_SUBPASS_EXTERNAL;
+  const bool before = from == VK_SUBPASS_EXTERNAL, after = to == VK_SUBPASS_EXTERNAL;
   result.srcStageMask = before ? kAll : kWork;
   result.srcAccessMask = before ? kAnyWrite : kWrites;
-  result.dstStageMask = before ? kWork : kAll;
-  result.dstAccessMask = before ? kWrites | kReads : kAnyWrite | VK_ACCESS_MEMORY_READ_BIT;
+  result.dstStageMask = after ? kAll : kWork;
+  result.dstAccessMask = after ? kAnyWrite | VK_ACCESS_MEMORY_READ_BIT : kWrites | kReads;
   return result;
 }
 
 }  // namespace
 
-VulkanRaster::VulkanRaster(const VulkanContext& context, uint32_t resolution)
-    : context_(context), resolution_(resolution) {
+VulkanRaster::VulkanRaster(const VulkanContext& context, VulkanRunner& runner, uint32_t resolution,
+                           uint32_t triangles)
+    : context_(context), runner_(runner), resolution_(resolution) {
   const DeviceInfo& info = context.info();
   if (!context.whyNoRaster().empty()) {
     throw Error(fmt::format("{} ({}) cannot rasterise: {}", info.id, info.name, context.whyNoRaster()));
@@ -62,16 +65,37 @@ VulkanRaster::VulkanRaster(const VulkanContext& context, uint32_t resolution)
     throw Error(fmt::format("{} ({}) draws images of {} pixels a side at most, not of {}", info.id, info.name,
                             context.limits().image_side, resolution));
   }
-  leaves_ = context.buffer(uint64_t(kHemicubeViews) * resolution * resolution * 4, "pixels of a hemicube");
-  ids_ =
-      VulkanImage(context, kIdFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                  VK_IMAGE_ASPECT_COLOR_BIT, resolution, kHemicubeViews, "images of a hemicube");
-  depth_ = VulkanImage(context, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
-                       VK_IMAGE_ASPECT_DEPTH_BIT, resolution, kHemicubeViews, "depth of a hemicube");
+  createImages();
   createPass();
   createFramebuffer();
   layout_ = pushLayout(context, VK_SHADER_STAGE_VERTEX_BIT);
-  createPipeline();
+  createPipelines();
+  cull_ = VulkanStage::list(context, "cull_chunks");
+  boundChunks(triangles);
+}
+
+void VulkanRaster::createImages() {
+  leaves_ = context_.buffer(uint64_t(kHemicubeViews) * resolution_ * resolution_ * 4, "pixels of a hemicube");
+  ids_ =
+      VulkanImage(context_, kIdFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+                  VK_IMAGE_ASPECT_COLOR_BIT, resolution_, kHemicubeViews, "images of a hemicube");
+  depth_ = VulkanImage(context_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                       VK_IMAGE_ASPECT_DEPTH_BIT, resolution_, kHemicubeViews, "depth of a hemicube");
+}
+
+void VulkanRaster::boundChunks(uint32_t triangles) {
+  VulkanLaunch& launch = runner_.launch;
+  launch.triangle_count = triangles;
+  launch.chunk_count = (triangles + kChunkTriangles - 1) / kChunkTriangles;
+  bounds_ = context_.buffer(uint64_t(launch.chunk_count) * 24, "boxes of chunks");
+  draws_ =
+      context_.buffer(uint64_t(launch.chunk_count) * kHemicubeViews * sizeof(VkDrawIndirectCommand), "draws");
+  launch.chunk_bounds = bounds_.address();
+  launch.draws = draws_.address();
+  launch.raster_leaves = leaves_.address();
+  const VulkanStage bound = VulkanStage::list(context_, "chunk_bounds");
+  runner_.run(bound, launch.chunk_count);
+  runner_.commands.finish();
 }
 
 void VulkanRaster::createPass() {
@@ -86,19 +110,24 @@ void VulkanRaster::createPass() {
   subpass.colorAttachmentCount = 1;
   subpass.pColorAttachments = &ids;
   subpass.pDepthStencilAttachment = &depth;
-  const VkSubpassDependency dependencies[] = {dependency(VK_SUBPASS_EXTERNAL, 0),
-                                              dependency(0, VK_SUBPASS_EXTERNAL)};
+  const std::vector<VkSubpassDescription> subpasses(kHemicubeViews, subpass);
+  std::vector<VkSubpassDependency> dependencies;
+  for (uint32_t view = 0; view < kHemicubeViews; ++view) {
+    dependencies.push_back(dependency(VK_SUBPASS_EXTERNAL, view));
+    dependencies.push_back(dependency(view, VK_SUBPASS_EXTERNAL));
+    if (view > 0) dependencies.push_back(dependency(view - 1, view));
+  }
   auto views = vkStruct<VkRenderPassMultiviewCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_MULTIVIEW_CREATE_INFO);
-  views.subpassCount = 1;
-  views.pViewMasks = &kViewMask;
+  views.subpassCount = kHemicubeViews;
+  views.pViewMasks = kViewMasks;
   auto info = vkStruct<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
   info.pNext = &views;
   info.attachmentCount = 2;
   info.pAttachments = attachments;
-  info.subpassCount = 1;
-  info.pSubpasses = &subpass;
-  info.dependencyCount = 2;
-  info.pDependencies = dependencies;
+  info.subpassCount = kHemicubeViews;
+  info.pSubpasses = subpasses.data();
+  info.dependencyCount = static_cast<uint32_t>(dependencies.size());
+  info.pDependencies = dependencies.data();
   VkRenderPass pass = VK_NULL_HANDLE;
   checkVk(context_.api().vkCreateRenderPass(context_.device(), &info, nullptr, &pass), "vkCreateRenderPass");
   pass_ = {context_, pass, [](const VulkanContext& c, VkRenderPass handle) {
@@ -122,7 +151,7 @@ void VulkanRaster::createFramebuffer() {
                   }};
 }
 
-void VulkanRaster::createPipeline() {
+void VulkanRaster::createPipelines() {
   const VulkanHandle<VkShaderModule> vertex = shaderModule(context_, "hemicube.vert");
   const VulkanHandle<VkShaderModule> fragment = shaderModule(context_, "hemicube.frag");
   const VkPipelineShaderStageCreateInfo stages[] = {stageInfo(VK_SHADER_STAGE_VERTEX_BIT, vertex.get()),
@@ -133,12 +162,12 @@ void VulkanRaster::createPipeline() {
       VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
   assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
   const auto side = static_cast<float>(resolution_);
-  const VkViewport view{0, 0, side, side, 0, 1};
+  const VkViewport whole{0, 0, side, side, 0, 1};
   const VkRect2D area{{0, 0}, {resolution_, resolution_}};
   auto viewport =
       vkStruct<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
   viewport.viewportCount = viewport.scissorCount = 1;
-  viewport.pViewports = &view;
+  viewport.pViewports = &whole;
   viewport.pScissors = &area;
   auto raster = vkStruct<VkPipelineRasterizationStateCreateInfo>(
       VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
@@ -170,16 +199,22 @@ void VulkanRaster::createPipeline() {
   info.pColorBlendState = &blend;
   info.layout = layout_.get();
   info.renderPass = pass_.get();
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  checkVk(context_.api().vkCreateGraphicsPipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr,
-                                                   &pipeline),
-          "vkCreateGraphicsPipelines");
-  pipeline_ = {context_, pipeline, destroyPipeline};
+  for (uint32_t view = 0; view < kHemicubeViews; ++view) {
+    info.subpass = view;
+    VkPipeline pipeline = VK_NULL_HANDLE;
+    checkVk(context_.api().vkCreateGraphicsPipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr,
+                                                     &pipeline),
+            "vkCreateGraphicsPipelines");
+    pipelines_[view] = {context_, pipeline, destroyPipeline};
+  }
 }
 
-void VulkanRaster::record(VulkanCommands& commands, VkDeviceAddress launch, uint32_t triangles) const {
+void VulkanRaster::draw() {
+  const uint32_t chunks = runner_.launch.chunk_count;
+  runner_.run(cull_, chunks * kHemicubeViews);
   const VulkanApi& api = context_.api();
-  const VkCommandBuffer buffer = commands.next();
+  const VulkanPush push{runner_.recordLaunch(), 0, 0};
+  const VkCommandBuffer buffer = runner_.commands.next();
   VkClearValue clear[2]{};
   clear[0].color.uint32[0] = kNoTriangle;
   clear[1].depthStencil.depth = 0;  // as far as can be
@@ -190,20 +225,23 @@ void VulkanRaster::record(VulkanCommands& commands, VkDeviceAddress launch, uint
   begin.clearValueCount = 2;
   begin.pClearValues = clear;
   api.vkCmdBeginRenderPass(buffer, &begin, VK_SUBPASS_CONTENTS_INLINE);
-  api.vkCmdBindPipeline(buffer, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline_.get());
-  for (uint32_t first = 0; first < triangles; first += std::min(kDrawTriangles, triangles - first)) {
-    const uint32_t count = std::min(kDrawTriangles, triangles - first);
-    const VulkanPush push{launch, first, first + count};
+  for (uint32_t view = 0; view < kHemicubeViews; ++view) {
+    if (view > 0) api.vkCmdNextSubpass(buffer, VK_SUBPASS_CONTENTS_INLINE);
+    api.vkCmdBindPipeline(buffer, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines_[view].get());
     api.vkCmdPushConstants(buffer, layout_.get(), VK_SHADER_STAGE_VERTEX_BIT, 0, sizeof push, &push);
-    api.vkCmdDraw(buffer, 3 * count, 1, 0, 0);
+    for (uint32_t first = 0; first < chunks; first += std::min(context_.limits().draws, chunks - first)) {
+      constexpr uint32_t kStride = sizeof(VkDrawIndirectCommand);
+      api.vkCmdDrawIndirect(buffer, draws_.get(), (uint64_t(view) * chunks + first) * kStride,
+                            std::min(context_.limits().draws, chunks - first), kStride);
+    }
   }
   api.vkCmdEndRenderPass(buffer);
 
   VkBufferImageCopy region{};
   region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, kHemicubeViews};
   region.imageExtent = {resolution_, resolution_, 1};
-  api.vkCmdCopyImageToBuffer(commands.next(), ids_.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, leaves_.get(),
-                             1, &region);
+  api.vkCmdCopyImageToBuffer(runner_.commands.next(), ids_.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                             leaves_.get(), 1, &region);
 }
 
 }  // namespace sightline

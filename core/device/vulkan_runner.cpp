@@ -9,7 +9,7 @@ namespace sightline {
 
 // GLSL's scalar layout pads nothing and aligns each member by its own components: so must C++.
 static_assert(offsetof(VulkanLaunch, tlas) == 144 && alignof(VulkanLaunch) == 8);
-static_assert(sizeof(VulkanLaunch) == 144 + 28 * sizeof(uint64) + 14 * sizeof(uint));
+static_assert(sizeof(VulkanLaunch) == 144 + 30 * sizeof(uint64) + 16 * sizeof(uint));
 static_assert(sizeof(Face) == 96 && sizeof(Ray) == 32 && sizeof(Hit) == 8 && sizeof(PvsEntry) == 32);
 static_assert(sizeof(RandomSegment) == 64 && sizeof(StageParams) == 64 && sizeof(ViewFrame) == 64);
 

@@ -107,6 +107,47 @@ TEST_F(Raster, SameSetAndWitnessesEveryTimeAndInAHashSet) {
   }
 }
 
+/// A hemicube shows what rays through its pixels meet, in all its images and for a scene of many chunks: each
+/// triangle that is traced in a block of 3 by 3 pixels, so clear of its edges, is drawn.
+TEST_F(Raster, ShowsWhatTracingShows) {
+  constexpr uint32_t kResolution = 200;
+  const Scene scene = generateScene("city", 100'000, 7);
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const auto device = makeDevice("vulkan", scene, bvh), cpu = makeDevice("cpu", scene, bvh);
+  const std::vector<Face> faces = cellFaces({"cell", {-50, 12, 3}, {6, 2, 6}, {0, 25, 0}});
+  for (const uint32_t f : {0u, 3u, 5u}) {
+    const Hemicube hemicube = hemicubeAt(
+        faces[f], xyz3(faces[f].corner) + 0.5f * xyz3(faces[f].edge_u) + 0.25f * xyz3(faces[f].edge_v));
+    device->beginCell(faces, StageParams{});
+    device->rasterize(hemicube, kResolution, hemicubeNear(scene, faces));
+    EXPECT_EQ(device->counters().rays, hemicubeSamples(kResolution));
+    device->collect(kStageRandom);
+    std::vector<uint32_t> drawn;
+    for (const PvsEntry& entry : device->readPvs()) drawn.push_back(entry.origin_triangle.w);
+    EXPECT_TRUE(std::ranges::is_sorted(drawn));
+    std::vector<uint32_t> traced(size_t(kHemicubeViews) * kResolution * kResolution);
+    cpu->traceViews(hemicube, kResolution, traced);
+    size_t blocks = 0;
+    for (uint32_t place = 0; place < hemicubeSamples(kResolution); ++place) {
+      const uint32_t pixel = hemicubePixel(place, kResolution), view = hemicubeView(place, kResolution);
+      const uint32_t x = pixel % kResolution, y = pixel / kResolution;
+      const uint32_t rows = view == 0 ? kResolution : kResolution / 2;
+      if (x == 0 || y == 0 || x + 1 == kResolution || y + 1 >= rows) continue;
+      const auto at = [&](int dx, int dy) {
+        return traced[(size_t(view) * kResolution + size_t(int(y) + dy)) * kResolution + size_t(int(x) + dx)];
+      };
+      const uint32_t triangle = at(0, 0);
+      bool block = triangle != kNoTriangle;
+      for (int k = 0; k < 9; ++k) block &= at(k % 3 - 1, k / 3 - 1) == triangle;
+      if (!block) continue;
+      ++blocks;
+      ASSERT_TRUE(std::ranges::binary_search(drawn, triangle))
+          << triangle << ", face " << f << ", view " << view << ", pixel " << x << " " << y;
+    }
+    EXPECT_GT(blocks, 1000u) << "face " << f;
+  }
+}
+
 /// By how many pixels the centre of the witness's pixel lies outside the triangle as it was drawn; negative:
 /// inside. Nothing if part of the triangle is behind the image.
 std::optional<double> pixelsOutside(const Scene& scene, uint32_t triangle, const Witness& witness,
