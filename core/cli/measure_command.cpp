@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -74,7 +75,8 @@ std::vector<PvsFile> loadSets(const MeasureCommand& command, const Scene& scene)
 std::vector<uint32_t> cellsToMeasure(const MeasureCommand& command, const PvsFile& pvs) {
   std::vector<uint32_t> indices;
   for (const std::string& name : command.cells) {
-    indices.push_back(uint32_t(&chooseCell(pvs, name, command.pvs.front()) - pvs.cells.data()));
+    const auto index = uint32_t(&chooseCell(pvs, name, command.pvs.front()) - pvs.cells.data());
+    if (std::find(indices.begin(), indices.end(), index) == indices.end()) indices.push_back(index);
   }
   for (uint32_t i = 0; command.cells.empty() && i < pvs.cells.size(); ++i) indices.push_back(i);
   return indices;
@@ -219,6 +221,9 @@ void run(const MeasureCommand& command) {
   StopSignal stop;
   measureAll(command, scene, *device, files, cells, stop, report);
   std::fputs(measureTable(report).c_str(), stdout);
+  if (!report.complete) {
+    fmt::print("stopped: {} of {} cells are measured\n", report.sets.front().cells.size(), cells.size());
+  }
   fmt::print("{} rays in {}\n", shortCount(report.rays), shortDuration(report.seconds));
   save(command.report, jsonText(measureJson(report)));
   save(command.csv, measureCsv(report));

@@ -59,6 +59,7 @@ std::string measureTable(const MeasureReport& report) {
   }
   std::string table;
   for (const MeasuredSet& set : report.sets) {
+    if (set.cells.empty()) continue;  // stopped in the first
     table += fmt::format(
         "{}\n{:<{}}   triangles   avg error   max error  avg regions  largest region  wrong "
         "share\n",

@@ -1,8 +1,5 @@
-#include <fcntl.h>
 #include <fmt/core.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <fstream>
@@ -18,6 +15,7 @@ namespace sightline {
 namespace {
 
 using test::ProgramRun;
+using test::Running;
 using test::runProgram;
 
 /// A folder with a scene of a few hundred triangles (a floor with boxes on it) and cells above the floor.
@@ -66,31 +64,6 @@ class Workplace {
   }
 
   TemporaryFolder folder_;
-};
-
-/// A program that runs beside the test.
-class Running {
- public:
-  Running(const std::string& arguments, const std::string& output) {
-    pid_ = ::fork();
-    if (pid_ != 0) return;
-    const int file = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    ::dup2(file, 1);
-    ::dup2(file, 2);
-    const std::string command = "exec '" SL_PROGRAM "' " + arguments;
-    ::execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
-    ::_exit(127);
-  }
-  void send(int signal) { ::kill(pid_, signal); }
-  /// Exit code, or minus the signal that ended it.
-  int wait() {
-    int status = 0;
-    ::waitpid(pid_, &status, 0);
-    return WIFSIGNALED(status) ? -WTERMSIG(status) : WEXITSTATUS(status);
-  }
-
- private:
-  pid_t pid_;
 };
 
 /// The file without what may differ between two runs: the device and the times.

@@ -137,6 +137,27 @@ TEST_F(MeasureCommandTest, AgreesWithTheBoundOfATargetedBake) {
             0, {"target.pvs"});
 }
 
+/// Ctrl-C: what is measured is said and written, the rest is not waited for.
+TEST_F(MeasureCommandTest, EndsInOrderWhenStopped) {
+  test::Running measure("measure " + input() + " --device cpu --views 1000000 --resolution 1000 --report " +
+                            path("stopped.json"),
+                        path("log"));
+  const auto log = [] {
+    std::ifstream in(path("log"));
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  // The first line of progress comes after a second.
+  for (int i = 0; i < 600 && log().find("Mrays/s") == std::string::npos; ++i) ::usleep(50'000);
+  measure.send(SIGINT);
+  EXPECT_EQ(measure.wait(), 130) << log();
+  EXPECT_NE(log().find("path-1 1/2  views "), std::string::npos) << log();
+  EXPECT_NE(log().find(" left "), std::string::npos) << log();
+  EXPECT_NE(log().find("stopped: 0 of 2 cells are measured"), std::string::npos) << log();
+  const auto report = nlohmann::json::parse(std::ifstream(path("stopped.json")));
+  EXPECT_EQ(report["complete"], false);
+  EXPECT_TRUE(report["sets"][0]["cells"].empty());
+}
+
 TEST_F(MeasureCommandTest, SaysTheDefaultsOfAProcessor) {
   expectRun("measure " + input() + " --device cpu --cell 0", 0,
             {"200 views of 250 x 250 pixels a cell (the defaults of a processor)"});
