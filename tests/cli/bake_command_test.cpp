@@ -330,6 +330,8 @@ TEST(BakeCommand, FailuresAreOneLineBeforeTheWork) {
              "missing.json");
   expectLine(place.bake("x.pvs", "--n-rand 0"), 2, "--n-rand");
   expectLine(place.bake("x.pvs", "--delta-abs nan"), 2, "--delta-abs");
+  expectLine(place.bake("x.pvs", "--method raster"), 2, "use --device vulkan, not cpu");
+  expectLine(place.bake("x.pvs", "--method raster --raster-resolution 8"), 2, "--raster-resolution");
   expectLine(place.bake("x.pvs", "--set other"), 2, "--set");
   expectLine(place.bake("x.pvs", "--nonsense"), 2, "--help");
   expectLine(place.bake("x.pvs", "--seed -1"), 2, "--seed");
