@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/report/csv.h"
 #include "core/report/text.h"
 
@@ -81,6 +83,9 @@ ReportTable cellsTable(const BakeReport& report) {
   ReportTable table{.columns = {"cell", "triangles", "of the scene", "rays", "Mrays/s", "iterations",
                                 "by random", "by border", "by reverse", "contained", "missing rays at most",
                                 "seconds", "ended by"}};
+  const bool bounded =
+      std::ranges::any_of(report.cells, [](const auto& c) { return c.stats.bound_tests > 0; });
+  if (bounded) table.columns.push_back("error at most");
   for (const CellSummary& cell : report.cells) {
     const CellStats& s = cell.stats;
     const double share =
@@ -92,26 +97,41 @@ ReportTable cellsTable(const BakeReport& report) {
          std::to_string(s.reverse.new_triangles), std::to_string(s.contained_triangles),
          s.validation_rays == 0 ? "not measured" : fmt::format("{:.2g}", cell.missingBound()),
          fmt::format("{:.2f}", s.seconds), stopReasonName(s.stop)});
+    if (bounded)
+      table.rows.back().push_back(s.bound_tests > 0 ? fmt::format("{:.3g}", s.error_bound) : "not tested");
   }
   return table;
 }
 
+/// Those that matter to the method.
 std::vector<ReportFact> parameterFacts(const BakeParams& p) {
   const auto limit = [](auto value) { return value == 0 ? std::string("none") : fmt::format("{}", value); };
-  return {{"method", methodName(p.method)},
-          {"random rays an iteration", std::to_string(p.n_rand)},
-          {"border samples an edge", std::to_string(p.n_abs_edge)},
-          {"reverse samples an edge", std::to_string(p.n_rs_edge)},
-          {"reverse samples on faces", std::to_string(p.n_rs_area)},
-          {"border distance", fmt::format("{:g} + {:g} of distance", p.delta_abs, p.delta_abs_relative)},
-          {"discontinuity", fmt::format("{:g} + {:g} of distance", p.delta_rs, p.delta_rs_relative)},
-          {"T", std::to_string(p.threshold)},
-          {"quiet iterations", std::to_string(p.quiet_iterations)},
-          {"most rays a cell", limit(p.max_rays)},
-          {"most seconds a cell", limit(p.max_seconds)},
-          {"rays of a batch", std::to_string(p.batch_rays)},
-          {"validation rays", std::to_string(p.validation_rays)},
-          {"seed", std::to_string(p.seed)}};
+  const bool drawn = p.method == Method::kRaster;
+  std::vector<ReportFact> facts = {
+      {"method", methodName(p.method)},
+      {drawn ? "samples an iteration" : "random rays an iteration", std::to_string(p.n_rand)}};
+  if (drawn) facts.push_back({"pixels a side", std::to_string(p.raster_resolution)});
+  if (!drawn && p.method != Method::kRandom) {
+    if (p.method != Method::kGvs) {  // which has fixed ones
+      facts.push_back({"border samples an edge", std::to_string(p.n_abs_edge)});
+      facts.push_back({"reverse samples an edge", std::to_string(p.n_rs_edge)});
+      facts.push_back({"reverse samples on faces", std::to_string(p.n_rs_area)});
+    }
+    const std::vector<ReportFact> exploration = {
+        {"border distance", fmt::format("{:g} + {:g} of distance", p.delta_abs, p.delta_abs_relative)},
+        {"discontinuity", fmt::format("{:g} + {:g} of distance", p.delta_rs, p.delta_rs_relative)},
+        {"rays of a batch", std::to_string(p.batch_rays)}};
+    facts.insert(facts.end(), exploration.begin(), exploration.end());
+  }
+  const std::vector<ReportFact> stop = {{"T", std::to_string(p.threshold)},
+                                        {"quiet iterations", std::to_string(p.quiet_iterations)},
+                                        {"target error", limit(p.target_error)},
+                                        {"most rays a cell", limit(p.max_rays)},
+                                        {"most seconds a cell", limit(p.max_seconds)},
+                                        {"validation rays", std::to_string(p.validation_rays)},
+                                        {"seed", std::to_string(p.seed)}};
+  facts.insert(facts.end(), stop.begin(), stop.end());
+  return facts;
 }
 
 std::vector<ReportFact> sceneFacts(const BakeReport& report) {
@@ -161,15 +181,15 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
   html.section("Cells");
   html.table(cellsTable(report));
   html.text(
-      "Missing rays, at most: upper end of the 95 % interval of the share of fresh random rays that hit a "
-      "triangle outside the set.");
+      "Missing rays at most: upper end of the 95 % interval of the share of fresh random rays that hit a "
+      "triangle outside the set. Error at most: the same of wrong pixels, where a target was set.");
   addGrowth(html, report, page.curves);
   if (!page.pictures.empty()) {
     html.section("Pictures");
     html.text(
-        "From outside: triangles in the set green, the view cell orange. From inside: what is seen but "
-        "missing "
-        "in the set red.");
+        "From outside: triangles in the set green, the view cell orange. From inside: red what is seen but "
+        "not in "
+        "the set.");
     html.pictures(page.pictures);
   }
   html.section("Parameters");

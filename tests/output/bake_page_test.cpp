@@ -67,6 +67,36 @@ TEST(BakePage, WithoutCurvesItStillHasItsTable) {
   EXPECT_NE(html.find("ray limit"), std::string::npos);
 }
 
+TEST(BakePage, ShowsTheErrorBoundWhereOneWasTested) {
+  BakePage page;
+  page.curves.resize(2);
+  BakeReport report = exampleReport();
+  for (CellSummary& cell : report.cells) cell.stats.bound_tests = 0;
+  EXPECT_EQ(bakePage(report, page).html().find("<th scope=\"col\">error at most</th>"), std::string::npos);
+  report.cells[0].stats.bound_tests = 2;
+  report.cells[0].stats.error_bound = 0.00125;
+  const std::string html = bakePage(report, page).html();
+  EXPECT_NE(html.find("<th scope=\"col\">error at most</th>"), std::string::npos);
+  EXPECT_NE(html.find("<td>0.00125</td></tr>"), std::string::npos);
+  EXPECT_NE(html.find("<td>not tested</td></tr>"), std::string::npos);
+}
+
+TEST(BakePage, ListsTheParametersOfTheMethod) {
+  BakePage page;
+  page.curves.resize(2);
+  BakeReport report = exampleReport();
+  const auto has = [&](Method method, const char* name) {
+    report.params.method = method;
+    return bakePage(report, page).html().find(std::string("<dt>") + name + "</dt>") != std::string::npos;
+  };
+  EXPECT_TRUE(has(Method::kGvspp, "border samples an edge"));
+  EXPECT_FALSE(has(Method::kGvs, "border samples an edge"));
+  EXPECT_TRUE(has(Method::kGvs, "discontinuity"));
+  EXPECT_FALSE(has(Method::kRandom, "discontinuity"));
+  EXPECT_TRUE(has(Method::kRaster, "pixels a side"));
+  EXPECT_FALSE(has(Method::kRaster, "random rays an iteration"));
+}
+
 TEST(BakePage, NoNameBreaksIt) {
   BakePage page;
   page.curves = {exampleCurve(), exampleCurve()};
