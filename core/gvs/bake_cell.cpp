@@ -22,9 +22,9 @@ namespace {
 /// Rays of one random launch at most: a second or so on a slow device, for progress and interruption.
 constexpr uint32_t kRandomLaunchRays = 1u << 22;
 
-/// After a test of the error, so many times its rays are traced before the next one: tests take a third of
+/// After a test of the error, so many times its rays are traced before the next one: tests take a fifth of
 /// all rays at most. Those that fail soon, while the error is large, hold up nothing.
-constexpr uint64_t kRaysBetweenTests = 2;
+constexpr uint64_t kRaysBetweenTests = 4;
 
 /// Random shifts of the four Halton bases, each below its period. use: 0 sampling, 1 validation.
 uvec4 haltonShifts(uint64_t seed, uint32_t cell_index, uint32_t use) {
@@ -88,8 +88,9 @@ class CellBake {
       more = sample() && (!explores() || explore());
       quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
       if (bound != nullptr) {
-        const bool due = rays_ >= next_test_ || !more;  // after a limit, too: to say where the error stands
-        const bool reached = due && testError(*bound, member);
+        // After a limit, too, but briefly: to say where the error stands.
+        const uint64_t most = more ? ~uint64_t(0) : rays_ / kRaysBetweenTests + 1;
+        const bool reached = (rays_ >= next_test_ || !more) && testError(*bound, member, most);
         if (reached && more) stats_.stop = StopReason::kTargetError;
         more = more && !reached;
       } else if (quiet >= params_.quiet_iterations) {
@@ -150,7 +151,7 @@ class CellBake {
   bool sample() { return params_.method == Method::kRaster ? sampleHemicubes() : sampleRandom(); }
 
   /// Whether the error of what has been found is below the target. Adds to `member` what is new.
-  bool testError(ErrorBound& bound, std::vector<uint8_t>& member) {
+  bool testError(ErrorBound& bound, std::vector<uint8_t>& member, uint64_t most) {
     for (const PvsEntry& entry : device_.readPvs()) member[entry.origin_triangle.w] = 1;
     validating_ = true;
     const uint64_t before = bound.rays();
@@ -159,7 +160,8 @@ class CellBake {
         [&](uint64_t rays) {
           stats_.bound_rays = rays;
           report(kStageRandom);
-        });
+        },
+        most);
     validating_ = false;
     next_test_ = rays_ + kRaysBetweenTests * (bound.rays() - before);
     stats_.bound_tests = bound.tests();

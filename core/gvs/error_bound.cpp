@@ -55,8 +55,8 @@ void ErrorBound::makeRays(std::vector<Ray>& rays, uint64_t first, uint64_t count
 }
 
 bool ErrorBound::test(const Trace& trace, std::span<const uint8_t> member,
-                      const std::function<void(uint64_t)>& between) {
-  const uint64_t due = raysOfTest(++tests_, target_);
+                      const std::function<void(uint64_t)>& between, uint64_t most) {
+  const uint64_t wanted = raysOfTest(++tests_, target_), due = std::min(wanted, most);
   uint64_t traced = 0, missed = 0;
   uint64_t launch = kFirstLaunch;
   makeRays(batch_, rays_, std::min(launch, due));
@@ -83,7 +83,7 @@ bool ErrorBound::test(const Trace& trace, std::span<const uint8_t> member,
   // about a share at that end would have been wrong at the first launch after which the bound of nine misses
   // is below that share, too: one event, of probability alpha at most.
   bound_ = std::min(bound_, missingUpperBound(missed, traced, alpha(tests_)));
-  return traced == due && missed <= kAllowedMisses;
+  return traced == wanted && missed <= kAllowedMisses;
 }
 
 }  // namespace sightline

@@ -219,6 +219,7 @@ TEST(TargetError, GivesWayToLimits) {
   const CellPvs pvs = bakeOn("cpu", scene, kCell, params);
   EXPECT_EQ(pvs.stats.stop, StopReason::kRayLimit);
   EXPECT_EQ(pvs.stats.bound_tests, 1u);
+  EXPECT_LE(pvs.stats.bound_rays, 251u) << "no long test after a limit";
   EXPECT_GT(pvs.stats.error_bound, 0.01);
   EXPECT_LT(pvs.stats.error_bound, 1);
   params.target_error = 1e-12;
