@@ -266,13 +266,13 @@ void declareViews(CLI::App& command, MeasureCommand& options) {
       .add_option("--views", options.views,
                   fmt::format("views of each cell (default: {}; where a processor traces, {})",
                               options.options.views, kViewsOnCpu))
-      ->check(between(1, 1e7))
+      ->check(between(1, kMaxMeasureViews))
       ->type_name("N");
   command
       .add_option("--resolution", options.resolution,
                   fmt::format("pixels along each side of a view (default: {}; where a processor traces, {})",
                               options.options.resolution, kResolutionOnCpu))
-      ->check(between(1, kMaxViewResolution))
+      ->check(between(1, kMaxMeasureResolution))
       ->type_name("N");
   command.add_option("--fov", options.options.fov, "field of view, degrees")
       ->check(between(kSmallestFov, kLargestFov))

@@ -1,5 +1,6 @@
 // Based on: R. Tarjan and J. van Leeuwen, "Worst-case analysis of set union algorithms", 1984 (union by size,
-// path halving). Sets shrink from the last of the series to the first, so regions only ever grow and merge.
+// path halving), over runs of pixels. Sets shrink from the last of the series to the first, so regions only
+// ever grow and merge.
 #include "core/measure/error_regions.h"
 
 #include <algorithm>
@@ -13,47 +14,71 @@ constexpr uint32_t kFree = 0xffffffffu;
 }  // namespace
 
 ErrorRegions::ErrorRegions(uint32_t resolution)
-    : resolution_(resolution), parent_(size_t(resolution) * resolution, kFree), size_(parent_.size()) {}
+    : resolution_(resolution), run_of_(size_t(resolution) * resolution, kFree) {}
 
-uint32_t ErrorRegions::root(uint32_t pixel) {
-  while (parent_[pixel] != pixel) pixel = parent_[pixel] = parent_[parent_[pixel]];
-  return pixel;
+void ErrorRegions::makeRuns(std::span<const uint32_t> pixels, std::span<const uint16_t> levels) {
+  runs_.clear();
+  for (size_t i = 0; i < pixels.size(); ++i) {
+    const uint32_t pixel = pixels[i];
+    const bool goes_on =
+        i > 0 && pixel == pixels[i - 1] + 1 && levels[i] == levels[i - 1] && pixel % resolution_ != 0;
+    if (!goes_on) runs_.push_back({pixel, pixel, kFree, 0, levels[i]});
+    runs_.back().last = pixel;
+    run_of_[pixel] = uint32_t(runs_.size() - 1);
+  }
 }
 
-/// Makes a pixel wrong. Returns the size of its region.
-uint32_t ErrorRegions::add(uint32_t pixel, ImageError& error) {
-  parent_[pixel] = pixel;
-  size_[pixel] = 1;
-  ++error.wrong;
-  ++error.regions;
-  const uint32_t x = pixel % resolution_, y = pixel / resolution_;
-  const uint32_t left = x > 0 ? x - 1 : x, right = std::min(x + 1, resolution_ - 1);
-  const uint32_t top = y > 0 ? y - 1 : y, bottom = std::min(y + 1, resolution_ - 1);
-  uint32_t mine = pixel;
-  for (uint32_t row = top; row <= bottom; ++row) {
-    for (uint32_t column = left; column <= right; ++column) {
-      const uint32_t neighbour = row * resolution_ + column;
-      if (parent_[neighbour] == kFree) continue;
-      uint32_t other = root(neighbour);
-      if (other == mine) continue;
-      if (size_[mine] < size_[other]) std::swap(mine, other);
-      parent_[other] = mine;
-      size_[mine] += size_[other];
-      --error.regions;
-    }
+/// Counting sort by level; starts_[level] becomes where the next level starts.
+void ErrorRegions::sortRuns(size_t level_count) {
+  starts_.assign(level_count + 2, 0);
+  for (const Run& run : runs_) ++starts_[run.level + 1];
+  for (size_t level = 1; level < starts_.size(); ++level) starts_[level] += starts_[level - 1];
+  order_.resize(runs_.size());
+  for (uint32_t i = 0; i < runs_.size(); ++i) order_[starts_[runs_[i].level]++] = i;
+}
+
+uint32_t ErrorRegions::root(uint32_t run) {
+  while (runs_[run].parent != run) run = runs_[run].parent = runs_[runs_[run].parent].parent;
+  return run;
+}
+
+/// Joins the region (a root) with those of all wrong pixels from `first` to `last`, of one row. Returns the
+/// root.
+uint32_t ErrorRegions::joinRow(uint32_t region, uint32_t first, uint32_t last, ImageError& error) {
+  for (uint32_t pixel = first; pixel <= last; ++pixel) {
+    const uint32_t run = run_of_[pixel];
+    if (run == kFree) continue;
+    pixel = runs_[run].last;  // the rest of it is of the same region
+    if (runs_[run].parent == kFree) continue;
+    uint32_t other = root(run);
+    if (other == region) continue;
+    if (runs_[region].size < runs_[other].size) std::swap(region, other);
+    runs_[other].parent = region;
+    runs_[region].size += runs_[other].size;
+    --error.regions;
   }
-  return size_[mine];
+  return region;
+}
+
+/// Makes the pixels of a run wrong. Returns the size of their region.
+uint32_t ErrorRegions::add(uint32_t run, ImageError& error) {
+  Run& mine = runs_[run];
+  mine.parent = run;
+  mine.size = mine.last - mine.first + 1;
+  error.wrong += mine.size;
+  ++error.regions;
+  const uint32_t row = mine.first / resolution_, start = row * resolution_, end = start + resolution_ - 1;
+  const uint32_t first = std::max(mine.first, start + 1) - 1, last = std::min(mine.last + 1, end);
+  uint32_t region = joinRow(run, first, last, error);
+  if (row > 0) region = joinRow(region, first - resolution_, last - resolution_, error);
+  if (row + 1 < resolution_) region = joinRow(region, first + resolution_, last + resolution_, error);
+  return runs_[region].size;
 }
 
 void ErrorRegions::count(std::span<const uint32_t> pixels, std::span<const uint16_t> levels,
                          std::span<ImageError> errors) {
-  // Counting sort by level.
-  starts_.assign(errors.size() + 2, 0);
-  for (const uint16_t level : levels) ++starts_[level + 1];
-  for (size_t level = 1; level < starts_.size(); ++level) starts_[level] += starts_[level - 1];
-  order_.resize(pixels.size());
-  for (size_t i = 0; i < pixels.size(); ++i) order_[starts_[levels[i]]++] = pixels[i];
-  // Now starts_[level] is where the next level starts.
+  makeRuns(pixels, levels);
+  sortRuns(errors.size());
   ImageError error;
   for (size_t level = errors.size(); level > 0; --level) {
     for (uint32_t i = starts_[level - 1]; i < starts_[level]; ++i) {
@@ -61,7 +86,7 @@ void ErrorRegions::count(std::span<const uint32_t> pixels, std::span<const uint1
     }
     errors[level - 1] = error;
   }
-  for (const uint32_t pixel : pixels) parent_[pixel] = kFree;
+  for (const uint32_t pixel : pixels) run_of_[pixel] = kFree;
 }
 
 }  // namespace sightline

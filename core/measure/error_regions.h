@@ -17,21 +17,32 @@ struct ImageError {
 /// pixel of level n is wrong for the first n of them. Reused from image to image; not thread-safe.
 class ErrorRegions {
  public:
-  /// resolution: pixels a side, 1 .. kMaxViewResolution.
+  /// resolution: pixels a side, 1 .. 16,384.
   explicit ErrorRegions(uint32_t resolution);
 
-  /// pixels: their numbers, row by row, no one twice; levels: of each, 1 .. errors.size(). errors[k] becomes
+  /// pixels: their numbers, row by row, ascending; levels: of each, 1 .. errors.size(). errors[k] becomes
   /// that of the pixels with a level above k.
   void count(std::span<const uint32_t> pixels, std::span<const uint16_t> levels,
              std::span<ImageError> errors);
 
  private:
-  uint32_t root(uint32_t pixel);
-  uint32_t add(uint32_t pixel, ImageError& error);
+  /// Pixels of one row and one level side by side: of the same triangle, mostly.
+  struct Run {
+    uint32_t first, last;  ///< pixels
+    uint32_t parent;       ///< another run of its region, itself at the root; kFree: not wrong yet
+    uint32_t size;         ///< at a root: pixels of the region
+    uint16_t level;
+  };
+
+  void makeRuns(std::span<const uint32_t> pixels, std::span<const uint16_t> levels);
+  void sortRuns(size_t level_count);
+  uint32_t root(uint32_t run);
+  uint32_t add(uint32_t run, ImageError& error);
+  uint32_t joinRow(uint32_t region, uint32_t first, uint32_t last, ImageError& error);
 
   uint32_t resolution_;
-  std::vector<uint32_t> parent_;  ///< a pixel: another of its region, itself at the root; kFree: not wrong
-  std::vector<uint32_t> size_;    ///< at a root: pixels of the region
+  std::vector<uint32_t> run_of_;  ///< a pixel; kFree: right
+  std::vector<Run> runs_;
   std::vector<uint32_t> starts_, order_;
 };
 

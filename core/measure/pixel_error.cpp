@@ -92,9 +92,10 @@ void checkOptions(const MeasureOptions& options) {
   const auto require = [](bool good, const std::string& line) {
     if (!good) throw Error(line, kExitUsage);
   };
-  require(options.views >= 1, "views must be at least 1");
-  require(options.resolution >= 1 && options.resolution <= kMaxViewResolution,
-          fmt::format("resolution must be 1 .. {}", kMaxViewResolution));
+  require(options.views >= 1 && options.views <= kMaxMeasureViews,
+          fmt::format("views must be 1 .. {}", kMaxMeasureViews));
+  require(options.resolution >= 1 && options.resolution <= kMaxMeasureResolution,
+          fmt::format("resolution must be 1 .. {}", kMaxMeasureResolution));
   require(options.fov >= kSmallestFov && options.fov <= kLargestFov,
           fmt::format("fov must be {} .. {} degrees", kSmallestFov, kLargestFov));
 }

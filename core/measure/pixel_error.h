@@ -15,12 +15,13 @@ namespace sightline {
 
 /// Views and their pixels. CPUs trace a hundredth of a GPU's rays, so their default looks less closely.
 struct MeasureOptions {
-  uint32_t views = 2000;
-  uint32_t resolution = 1000;  ///< pixels a side, 1 .. kMaxViewResolution
+  uint32_t views = 2000;       ///< 1 .. kMaxMeasureViews
+  uint32_t resolution = 1000;  ///< pixels a side, 1 .. kMaxMeasureResolution
   uint64_t seed = 1;
   double fov = kDefaultFov;  ///< degrees, kSmallestFov .. kLargestFov
   uint32_t worst_views = 3;  ///< views to name, at most
 };
+inline constexpr uint32_t kMaxMeasureViews = 1'000'000, kMaxMeasureResolution = 4096;
 inline constexpr uint32_t kViewsOnCpu = 200, kResolutionOnCpu = 250;
 
 /// Error of one set, over all views.

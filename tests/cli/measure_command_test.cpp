@@ -168,7 +168,7 @@ TEST_F(MeasureCommandTest, SaysTheDefaultsOfAProcessor) {
 TEST_F(MeasureCommandTest, SaysWhatIsWrong) {
   expectRun("measure " + path("city.glb"), 2, {"pvs"});
   expectRun("measure " + input() + " --views 0", 2, {"--views"});
-  expectRun("measure " + input() + " --resolution 20000", 2, {"--resolution"});
+  expectRun("measure " + input() + " --resolution 4097", 2, {"--resolution"});
   expectRun("measure " + input() + " --fov 180", 2, {"--fov"});
   expectRun("measure " + input() + " --device gpu9", 2, {"gpu9"});
   expectRun("measure " + input() + " --cell nowhere", 2, {"nowhere"});

@@ -254,7 +254,7 @@ TEST(PixelErrors, OfASceneAreAveragesAndLargest) {
 
 TEST(PixelErrors, OptionsOutOfRangeAreRefused) {
   MeasureOptions options;
-  options.resolution = 20000;
+  options.resolution = 4097;
   EXPECT_THROW(checkOptions(options), Error);
   options.resolution = 10;
   options.fov = 180;
