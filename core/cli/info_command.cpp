@@ -80,14 +80,14 @@ void showParams(const BakeParams& params) {
   row("distances",
       fmt::format("delta_abs {:g} + {:g} of the distance, delta_rs {:g} + {:g} of the distance",
                   params.delta_abs, params.delta_abs_relative, params.delta_rs, params.delta_rs_relative));
+  const std::string rule =
+      params.target_error > 0
+          ? fmt::format("wrong pixels below {:g} of all, with 95 % confidence", params.target_error)
+          : fmt::format("fewer than {} new triangles in {} iterations", params.threshold,
+                        params.quiet_iterations);
   row("stop rule",
-      fmt::format("fewer than {} new triangles in {} iterations{}{}", params.threshold,
-                  params.quiet_iterations, params.max_rays ? fmt::format(", {} rays", params.max_rays) : "",
+      fmt::format("{}{}{}", rule, params.max_rays ? fmt::format(", {} rays", params.max_rays) : "",
                   params.max_seconds > 0 ? fmt::format(", {:g} s", params.max_seconds) : ""));
-  if (params.target_error > 0) {
-    row("",
-        fmt::format("instead: wrong pixels below {:g} of all, with 95 % confidence", params.target_error));
-  }
   row("batch", fmt::format("{} rays", params.batch_rays));
   row("validation", fmt::format("{} rays", params.validation_rays));
 }
