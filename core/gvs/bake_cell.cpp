@@ -8,13 +8,12 @@
 
 #include "core/error.h"
 #include "core/gvs/error_bound.h"
+#include "core/gvs/face_rays.h"
 #include "core/gvs/hemicube.h"
 #include "core/gvs/random_segment.h"
 #include "core/scene/contained.h"
 #include "core/shared/border.h"
-#include "core/shared/halton.h"
 #include "core/shared/reverse.h"
-#include "core/splitmix.h"
 
 namespace sightline {
 namespace {
@@ -25,38 +24,6 @@ constexpr uint32_t kRandomLaunchRays = 1u << 22;
 /// After a test of the error, so many times its rays are traced before the next one: tests take a fifth of
 /// all rays at most. Those that fail soon, while the error is large, hold up nothing.
 constexpr uint64_t kRaysBetweenTests = 4;
-
-/// Random shifts of the four Halton bases, each below its period. use: 0 sampling, 1 validation.
-uvec4 haltonShifts(uint64_t seed, uint32_t cell_index, uint32_t use) {
-  const uint64_t key = splitmix(splitmix(splitmix(seed) ^ cell_index) ^ use);
-  const auto shift = [&](uint32_t base, uint64_t period) {
-    return static_cast<uint32_t>(splitmix(key ^ base) % period);
-  };
-  return {shift(2, uint64_t(1) << 32), shift(3, kHaltonPeriod3), shift(5, kHaltonPeriod5),
-          shift(7, kHaltonPeriod7)};
-}
-
-/// Shares of `total` in proportion to the faces' areas; they add up to total exactly (largest remainders,
-/// ties to the lower face).
-std::vector<uint32_t> raysByArea(std::span<const Face> faces, uint32_t total) {
-  std::vector<double> areas;
-  for (const Face& face : faces) {
-    areas.push_back(double(length3(xyz3(face.edge_u))) * double(length3(xyz3(face.edge_v))));
-  }
-  const double whole = std::accumulate(areas.begin(), areas.end(), 0.0);
-  std::vector<uint32_t> counts;
-  std::vector<std::pair<double, size_t>> remainders;
-  uint32_t assigned = 0;
-  for (size_t f = 0; f < faces.size(); ++f) {
-    const double exact = total * (areas[f] / whole);
-    counts.push_back(static_cast<uint32_t>(exact));
-    assigned += counts.back();
-    remainders.push_back({counts.back() - exact, f});
-  }
-  std::sort(remainders.begin(), remainders.end());
-  for (size_t i = 0; assigned < total; ++i, ++assigned) ++counts[remainders[i % faces.size()].second];
-  return counts;
-}
 
 /// One cell's bake in progress.
 class CellBake {
@@ -70,7 +37,7 @@ class CellBake {
         hooks_(hooks),
         face_rays_(raysByArea(faces_, params.n_rand)) {
     stage_params_.counts = uvec4(params.n_abs_edge, params.n_rs_edge, params.n_rs_area, faces_.size());
-    stage_params_.shifts = haltonShifts(params.seed, cell_index, 0);
+    stage_params_.shifts = haltonShifts(params.seed, cell_index, RandomUse::kSampling);
     stage_params_.distances =
         vec4(params.delta_abs_relative, params.delta_abs, params.delta_rs_relative, params.delta_rs);
     stage_params_.method.x = params.method == Method::kGvs ? kSampleGvs : kSampleGvspp;
@@ -118,7 +85,7 @@ class CellBake {
   /// Fresh random rays of other shifts; counts those that hit something outside the set.
   void validate() {
     validating_ = true;
-    const uvec4 shifts = haltonShifts(params_.seed, cell_index_, 1);
+    const uvec4 shifts = haltonShifts(params_.seed, cell_index_, RandomUse::kValidation);
     uint64_t first = 0;
     for (uint64_t left = params_.validation_rays; left > 0;) {
       const auto round = static_cast<uint32_t>(std::min<uint64_t>(left, 1u << 30));

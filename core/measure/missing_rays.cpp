@@ -1,0 +1,75 @@
+#include "core/measure/missing_rays.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/error.h"
+#include "core/gvs/face_rays.h"
+#include "core/shared/random_ray.h"
+
+namespace sightline {
+namespace {
+
+/// Rays that are traced at once: bounds the memory.
+constexpr uint32_t kChunk = 1u << 21;
+
+/// Random rays of a cell by their number, the faces one after the other.
+class NumberedRays {
+ public:
+  NumberedRays(const ViewCell& cell, uint32_t cell_index, uint64_t seed, uint32_t rays)
+      : faces_(cellFaces(cell)), shifts_(haltonShifts(seed, cell_index, RandomUse::kValidation)) {
+    for (const uint32_t count : raysByArea(faces_, rays))
+      ends_.push_back(count + (ends_.empty() ? 0 : ends_.back()));
+  }
+
+  Ray at(uint32_t number) const {
+    const auto face = std::upper_bound(ends_.begin(), ends_.end(), number) - ends_.begin();
+    return randomRay(number, 0, faces_[size_t(face)], shifts_);
+  }
+
+ private:
+  std::vector<Face> faces_;
+  uvec4 shifts_;
+  std::vector<uint32_t> ends_;
+};
+
+}  // namespace
+
+std::vector<std::vector<uint64_t>> countMissingRays(Device& device, const ViewCell& cell, uint32_t cell_index,
+                                                    uint64_t seed, uint32_t rays,
+                                                    std::span<const RankedSet> sets) {
+  if (rays < 1 || rays > kMostMissingRays) {
+    throw Error(fmt::format("missing rays must be 1 .. {}", kMostMissingRays), kExitUsage);
+  }
+  const NumberedRays numbered(cell, cell_index, seed, rays);
+  std::vector<std::vector<uint16_t>> levels(sets.size());
+  std::vector<std::vector<uint64_t>> by_level(sets.size());  // rays that the first so many prefixes miss
+  tbb::parallel_for(size_t(0), sets.size(), [&](size_t s) {
+    levels[s] = missingLevels(sets[s]);
+    by_level[s].assign(sets[s].prefixes.size() + 1, 0);
+  });
+  std::vector<Ray> batch(std::min(rays, kChunk));
+  std::vector<Hit> hits(batch.size());
+  for (uint32_t first = 0; first < rays; first += kChunk) {
+    const uint32_t count = std::min(rays - first, kChunk);
+    tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });
+    device.traceRays(std::span(batch).first(count), std::span(hits).first(count));
+    tbb::parallel_for(size_t(0), sets.size(), [&](size_t s) {
+      for (uint32_t i = 0; i < count; ++i) {
+        if (hits[i].triangle != kNoTriangle) ++by_level[s][levels[s][hits[i].triangle]];
+      }
+    });
+  }
+
+  std::vector<std::vector<uint64_t>> missing(sets.size());
+  for (size_t s = 0; s < sets.size(); ++s) {
+    missing[s].resize(sets[s].prefixes.size());
+    uint64_t sum = 0;
+    for (size_t p = missing[s].size(); p-- > 0;) missing[s][p] = sum += by_level[s][p + 1];
+  }
+  return missing;
+}
+
+}  // namespace sightline
