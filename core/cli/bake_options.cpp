@@ -14,59 +14,42 @@ namespace {
 
 constexpr const char* kParamsGroup = "Parameters (they decide the result)";
 
-/// The methods that work.
-const std::vector<std::string> kMethods = {"gvs++", "gvs", "random", "raster", "naive"};
-
-/// First of the parameters: CLI11 takes options in the order of declaration, so any other wins over --thesis.
 void declareMethod(CLI::App& command, BakeParams& params) {
   command
       .add_option_function<std::string>(
           "--method", [&params](const std::string& name) { params.method = *methodOf(name); },
           "gvs++; gvs: the original, with fewer border and reverse rays; random: random rays alone; raster: "
           "drawn hemicubes, on vulkan only; naive: gvs++ with the set on the host, for comparison")
-      ->check(CLI::IsMember(kMethods))
+      ->check(CLI::IsMember(bakeMethods()))
       ->type_name("NAME")
       ->default_str(methodName(params.method))
       ->group(kParamsGroup);
-  command
-      .add_flag_callback(
-          "--thesis", [&params] { setThesisParams(params); },
-          "the thesis's samples, distances in world units (0.001, 0.985) and stop rule; what is given "
-          "beside it wins")
+}
+
+template <typename Value>
+void declareCount(CLI::App& command, const char* name, Value& value, double low, double high,
+                  const char* help) {
+  command.add_option(name, value, help)
+      ->check(between(low, high))
+      ->type_name("N")
+      ->capture_default_str()
       ->group(kParamsGroup);
 }
 
-void declareParams(CLI::App& command, BakeParams& params) {
-  declareMethod(command, params);
-  const auto count = [&](const char* name, auto& value, double low, double high, const char* help) {
-    command.add_option(name, value, help)
-        ->check(between(low, high))
-        ->type_name("N")
-        ->capture_default_str()
-        ->group(kParamsGroup);
-  };
-  const auto number = [&](const char* name, auto& value, const char* help) {
-    command.add_option(name, value, help)
-        ->check(between(0, double(std::numeric_limits<float>::max())))
-        ->type_name("X")
-        ->default_str(fmt::format("{}", value))
-        ->group(kParamsGroup);
-  };
-  count("--n-rand", params.n_rand, 1, 4294967293.0, "random rays an iteration");
-  count("--n-abs-edge", params.n_abs_edge, 0, 1000, "samples along each long edge of the border polygon");
-  count("--n-rs-edge", params.n_rs_edge, 0, 1000, "reverse samples along each edge of the cell's faces");
-  count("--n-rs-area", params.n_rs_area, 0, 100000, "reverse samples on the cell's faces");
-  number("--delta-abs", params.delta_abs, "border distance in world units (thesis: 0.001), added to");
-  number("--delta-abs-relative", params.delta_abs_relative, "border distance as a share of the distance");
-  number("--delta-rs", params.delta_rs, "discontinuity threshold in world units, added to");
-  number("--delta-rs-relative", params.delta_rs_relative,
-         "discontinuity threshold as a share of the distance");
-  count("--raster-resolution", params.raster_resolution, 16, 16384,
-        "raster: pixels along an edge of a hemicube's front");
-  count("--threshold", params.threshold, 0, 4294967295.0, "T: a quiet iteration finds fewer new triangles");
-  count("--quiet-iterations", params.quiet_iterations, 1, 1000000, "stop after so many of them in a row");
-  count("--max-rays", params.max_rays, 0, 1e18, "stop a cell after so many rays (0: no limit)");
-  number("--max-seconds", params.max_seconds, "stop a cell after so many seconds (0: no limit)");
+template <typename Value>
+void declareNumber(CLI::App& command, const char* name, Value& value, const char* help) {
+  command.add_option(name, value, help)
+      ->check(between(0, double(std::numeric_limits<float>::max())))
+      ->type_name("X")
+      ->default_str(fmt::format("{}", value))
+      ->group(kParamsGroup);
+}
+
+void declareLimits(CLI::App& command, BakeParams& params) {
+  declareCount(command, "--max-rays", params.max_rays, 0, 1e18,
+               "stop a cell after so many rays (0: no limit)");
+  declareNumber(command, "--max-seconds", params.max_seconds,
+                "stop a cell after so many seconds (0: no limit)");
   command
       .add_option("--target-error", params.target_error,
                   "stop a cell when the share of wrong pixels is below E with 95 % confidence, instead of by "
@@ -74,8 +57,45 @@ void declareParams(CLI::App& command, BakeParams& params) {
       ->check(between(kSmallestTargetError, 0.999999))
       ->type_name("E")
       ->group(kParamsGroup);
-  count("--batch-rays", params.batch_rays, 4096, 1u << 28, "rays of a border or reverse batch at most");
-  count("--validation-rays", params.validation_rays, 0, 1e15, "rays that measure what a cell missed");
+  declareCount(command, "--validation-rays", params.validation_rays, 0, 1e15,
+               "rays that measure what a cell missed");
+}
+
+}  // namespace
+
+std::vector<std::string> bakeMethods() {
+  return {"gvs++", "gvs", "random", "raster", "naive"};
+}
+
+void declareSampling(CLI::App& command, BakeParams& params) {
+  // First: CLI11 takes options in the order of declaration, so any other wins over it.
+  command
+      .add_flag_callback(
+          "--thesis", [&params] { setThesisParams(params); },
+          "the thesis's samples, distances in world units (0.001, 0.985) and stop rule; what is given "
+          "beside it wins")
+      ->group(kParamsGroup);
+  declareCount(command, "--n-rand", params.n_rand, 1, 4294967293.0, "random rays an iteration");
+  declareCount(command, "--n-abs-edge", params.n_abs_edge, 0, 1000,
+               "samples along each long edge of the border polygon");
+  declareCount(command, "--n-rs-edge", params.n_rs_edge, 0, 1000,
+               "reverse samples along each edge of the cell's faces");
+  declareCount(command, "--n-rs-area", params.n_rs_area, 0, 100000, "reverse samples on the cell's faces");
+  declareNumber(command, "--delta-abs", params.delta_abs,
+                "border distance in world units (thesis: 0.001), added to");
+  declareNumber(command, "--delta-abs-relative", params.delta_abs_relative,
+                "border distance as a share of the distance");
+  declareNumber(command, "--delta-rs", params.delta_rs, "discontinuity threshold in world units, added to");
+  declareNumber(command, "--delta-rs-relative", params.delta_rs_relative,
+                "discontinuity threshold as a share of the distance");
+  declareCount(command, "--raster-resolution", params.raster_resolution, 16, 16384,
+               "raster: pixels along an edge of a hemicube's front");
+  declareCount(command, "--threshold", params.threshold, 0, 4294967295.0,
+               "T: a quiet iteration finds fewer new triangles");
+  declareCount(command, "--quiet-iterations", params.quiet_iterations, 1, 1000000,
+               "stop after so many of them in a row");
+  declareCount(command, "--batch-rays", params.batch_rays, 4096, 1u << 28,
+               "rays of a border or reverse batch at most");
   command.add_option("--seed", params.seed, "seed of the random rays, 0 to 2^64 - 1")
       ->check(wholeNumber())
       ->type_name("N")
@@ -83,35 +103,32 @@ void declareParams(CLI::App& command, BakeParams& params) {
       ->group(kParamsGroup);
 }
 
-void declareMachine(CLI::App& command, BakeOptions& options) {
+void declareMachine(CLI::App& command, std::string& device, DeviceOptions& options, bool& spatial_splits) {
   static const std::map<std::string, SetKind> kSets = {
       {"auto", SetKind::kAuto}, {"array", SetKind::kArray}, {"hash", SetKind::kHash}};
   const auto group = [](CLI::Option* option) { option->group("Machine (same result)"); };
   group(command
-            .add_option("--device", options.device,
+            .add_option("--device", device,
                         "cpu, opencl or vulkan; the latter two also with :INDEX or :PART-OF-NAME")
             ->check(deviceName())
             ->type_name("NAME")
             ->capture_default_str());
-  group(
-      command.add_option("--threads", options.device_options.threads, "of the tree and of cpu; 0: all cores")
-          ->check(between(0, 4096))
-          ->type_name("N")
-          ->capture_default_str());
-  const auto setKind = [&options](const std::string& name) { options.device_options.set = kSets.at(name); };
+  group(command.add_option("--threads", options.threads, "of the tree and of cpu; 0: all cores")
+            ->check(between(0, 4096))
+            ->type_name("N")
+            ->capture_default_str());
+  const auto setKind = [&options](const std::string& name) { options.set = kSets.at(name); };
   group(command.add_option_function<std::string>("--set", setKind, "how the set is kept")
             ->check(CLI::IsMember({"auto", "array", "hash"}))
             ->type_name("KIND"));
   group(command
-            .add_option("--memory-budget", options.device_options.memory_budget_bytes,
+            .add_option("--memory-budget", options.memory_budget_bytes,
                         "memory that the device may use, e.g. 4GB (0: what it reports)")
             ->transform(CLI::AsSizeValue(false).description(""))
             ->type_name("BYTES"));
-  group(command.add_flag("--spatial-splits", options.spatial_splits,
+  group(command.add_flag("--spatial-splits", spatial_splits,
                          "slower build, faster rays in scenes of long triangles"));
 }
-
-}  // namespace
 
 void declareOptions(CLI::App& command, BakeOptions& options) {
   command.add_option("scene", options.scene, ".obj, .gltf, .glb or .ply")->required()->type_name("SCENE");
@@ -132,8 +149,10 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
   command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");
   command.add_flag("--overwrite", options.overwrite, "replace a bake with other inputs");
-  declareMachine(command, options);
-  declareParams(command, options.params);
+  declareMachine(command, options.device, options.device_options, options.spatial_splits);
+  declareMethod(command, options.params);
+  declareSampling(command, options.params);
+  declareLimits(command, options.params);
 }
 
 }  // namespace sightline

@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "core/device/device.h"
 #include "core/pvs/pvs.h"
@@ -20,7 +21,17 @@ struct BakeOptions {
   bool repair = false, witnesses = false, spatial_splits = false, overwrite = false;
 };
 
-/// Declares the options; they write into `options`, which must live as long as `command`.
+/// Names of the methods that work, for --method.
+std::vector<std::string> bakeMethods();
+
+/// Declares how a bake samples: all of its parameters but method, limits and validation. params must live as
+/// long as `command`, here and below.
+void declareSampling(CLI::App& command, BakeParams& params);
+
+/// Declares where the work is done: --device, --threads, --set, --memory-budget, --spatial-splits.
+void declareMachine(CLI::App& command, std::string& device, DeviceOptions& options, bool& spatial_splits);
+
+/// Declares the options of bake; they write into `options`, which must live as long as `command`.
 void declareOptions(CLI::App& command, BakeOptions& options);
 
 }  // namespace sightline

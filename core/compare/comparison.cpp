@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/error.h"
-#include "core/gvs/bake_cell.h"
 #include "core/measure/missing_rays.h"
 
 namespace sightline {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/device/device.h"
-#include "core/gvs/bake_trace.h"
+#include "core/gvs/bake_cell.h"
 #include "core/measure/pixel_error.h"
 #include "core/pvs/pvs.h"
 #include "core/scene/scene.h"

@@ -16,6 +16,9 @@ struct BakePage {
   std::string command;  ///< that repeats it
 };
 
+/// The parameters of a bake that matter to its method, for a page.
+std::vector<ReportFact> parameterFacts(const BakeParams& params);
+
 /// The page of a bake: parameters, a table of the cells, how the sets grew (thesis, figures 7.3 and 7.4),
 /// pictures.
 HtmlReport bakePage(const BakeReport& report, const BakePage& page);
