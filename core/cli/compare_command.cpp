@@ -1,0 +1,227 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "core/cli/bake_options.h"
+#include "core/cli/command_line.h"
+#include "core/cli/commands.h"
+#include "core/cli/number_checks.h"
+#include "core/cli/stop_signal.h"
+#include "core/compare/comparison_report.h"
+#include "core/device/naive_device.h"
+#include "core/error.h"
+#include "core/report/status_line.h"
+#include "core/report/text.h"
+#include "core/scene/file_io.h"
+
+namespace sightline {
+namespace {
+
+struct CompareCommand {
+  std::filesystem::path scene, cells, report, html, csv;
+  std::vector<std::string> methods;
+  std::string device = "opencl";
+  DeviceOptions device_options;
+  std::optional<uint32_t> views, resolution;
+  CompareOptions options;
+  bool spatial_splits = false, repair = false;
+};
+
+void chooseSize(const CompareCommand& command, bool small, MeasureOptions& measure) {
+  measure = command.options.measure;
+  measure.views = command.views.value_or(small ? kViewsOnCpu : measure.views);
+  measure.resolution = command.resolution.value_or(small ? kResolutionOnCpu : measure.resolution);
+}
+
+/// One device a method: the methods that work on the same kind share one.
+class Devices {
+ public:
+  Devices(const CompareCommand& command, const Scene& scene, const Bvh& bvh) {
+    owned_.push_back(makeDevice(command.device, scene, bvh, command.device_options));
+    for (const Method method : command.options.methods) {
+      if (method == Method::kNaive) {
+        owned_.push_back(
+            makeNaiveDevice(makeDevice(command.device, scene, bvh, command.device_options), scene));
+      }
+      by_method_.push_back(method == Method::kNaive ? owned_.back().get() : owned_.front().get());
+    }
+  }
+
+  std::span<Device* const> byMethod() const { return by_method_; }
+  const Device& main() const { return *owned_.front(); }
+
+ private:
+  std::vector<std::unique_ptr<Device>> owned_;
+  std::vector<Device*> by_method_;
+};
+
+CompareEvents statusEvents(StatusLine& status, const std::string& place, const StopSignal& stop) {
+  CompareEvents events;
+  events.bake = [&status, place](const ViewCell& cell, Method method, uint64_t seed, const BakeProgress& p) {
+    status.show([&] {
+      return fmt::format("{} {}  {} seed {}  {} rays  {:.2f} Mrays/s  PVS {}  {}", place, cell.name,
+                         methodName(method), seed, shortCount(p.rays), double(p.rays) / p.seconds * 1e-6,
+                         p.pvs_size, shortDuration(p.seconds));
+    });
+  };
+  events.measure = [&status, place](const ViewCell& cell, const MeasureProgress& p) {
+    status.show([&] {
+      return fmt::format("{} {}  views {}/{}  {:.2f} Mrays/s  left {}", place, cell.name, p.views_done,
+                         p.views, double(p.rays) / p.seconds * 1e-6,
+                         shortDuration(p.seconds / p.views_done * (p.views - p.views_done)));
+    });
+  };
+  events.stop = stop.flag();
+  return events;
+}
+
+/// Compares on all cells; false if it was stopped. What is done by then is in the report.
+bool compareCells(const Scene& scene, const std::vector<ViewCell>& cells, const Devices& devices,
+                  const StopSignal& stop, ComparisonReport& report) {
+  StatusLine status;
+  try {
+    for (uint32_t c = 0; c < cells.size(); ++c) {
+      const std::string place = fmt::format("{}/{}", c + 1, cells.size());
+      report.cells.push_back(compareCell(devices.byMethod(), scene, cells[c], c, report.options,
+                                         statusEvents(status, place, stop)));
+      status.end();
+      fmt::print("{} {} done\n", place, cells[c].name);
+      std::fflush(stdout);
+    }
+  } catch (const Interrupted&) {
+    status.end();
+    fmt::print("stopped after {} of {} cells\n", report.cells.size(), cells.size());
+    return false;
+  }
+  return true;
+}
+
+void save(const std::filesystem::path& path, const std::string& text) {
+  if (path.empty()) return;
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+void saveReports(const CompareCommand& command, const ComparisonReport& report) {
+  if (report.cells.empty()) return;
+  std::fputs(("\n" + comparisonTable(report)).c_str(), stdout);
+  save(command.report, comparisonJson(report));
+  save(command.csv, comparisonCsv(report));
+  if (!command.html.empty()) comparisonPage(report).save(command.html);
+}
+
+void run(const CompareCommand& command) {
+  checkOptions(command.options);
+  const std::array outputs = {command.report, command.html, command.csv};
+  requireSeparate(outputs, std::array{command.scene, command.cells});
+  for (const auto& output : outputs) {
+    if (!output.empty()) OutputFile probe(output);  // fail before the work, not after it
+  }
+  const Scene scene = loadScene(command.scene, {.repair = command.repair});
+  const std::vector<ViewCell> cells = loadCells(command.cells);
+  requireDevice(command.device);
+  const Bvh bvh =
+      buildBvh(scene.positions, scene.triangles,
+               {.spatial_splits = command.spatial_splits, .threads = command.device_options.threads});
+  const Devices devices(command, scene, bvh);
+
+  ComparisonReport report;
+  report.version = SL_VERSION;
+  report.command = commandLine();
+  report.scene = summarize(scene, command.scene.filename().string(), hashScene(scene));
+  report.device = devices.main().info();
+  report.spatial_splits = command.spatial_splits;
+  report.options = command.options;
+  chooseSize(command, report.device.on_cpu, report.options.measure);
+  fmt::print("{}: {} triangles, {} cells; {}, {}; {} views of {} x {} pixels a cell\n",
+             command.scene.string(), scene.triangles.size(), cells.size(), report.device.id,
+             report.device.name, report.options.measure.views, report.options.measure.resolution,
+             report.options.measure.resolution);
+  StopSignal stop;
+  const bool whole = compareCells(scene, cells, devices, stop, report);
+  saveReports(command, report);
+  if (!whole) throw ExitCode{stop.exitCode()};
+}
+
+void declareFiles(CLI::App& command, CompareCommand& options) {
+  command.add_option("scene", options.scene, ".obj, .gltf, .glb or .ply")->required()->type_name("SCENE");
+  command.add_option("--cells", options.cells, "view cells, JSON")->required()->type_name("CELLS.json");
+  command.add_option("--report", options.report, "write everything as JSON (docs/report.md)")
+      ->type_name("R.json");
+  command.add_option("--csv", options.csv, "write the points of the budget as CSV")->type_name("R.csv");
+  command.add_option("--html", options.html, "write a page with tables and charts")->type_name("R.html");
+  command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");
+}
+
+void declareComparison(CLI::App& command, CompareCommand& options) {
+  CompareOptions& compare = options.options;
+  command.add_option("--methods", options.methods, "methods to compare (default: gvs++,gvs,random)")
+      ->delimiter(',')
+      ->check(CLI::IsMember(bakeMethods()))
+      ->type_name("NAME,...");
+  command.add_option("--rays", compare.params.max_rays, "budget of a cell: so many rays")
+      ->check(between(1, 1e18))
+      ->type_name("N");
+  command.add_option("--seconds", compare.params.max_seconds, "budget of a cell: so many seconds")
+      ->check(between(1e-6, 1e9))
+      ->type_name("S");
+  command
+      .add_option("--repeats", compare.repeats,
+                  "bakes of each cell and method, with seeds that follow --seed")
+      ->check(between(1, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option("--points", compare.points,
+                  "measure the pixel error at the whole budget, half of it, a quarter ...")
+      ->check(between(1, 40))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--missing-rays", compare.missing_rays, "rays that measure the share of missing rays")
+      ->check(between(1, double(1u << 30)))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option("--views", options.views,
+                  fmt::format("views of each cell (default: {}; where a processor traces, {})",
+                              compare.measure.views, kViewsOnCpu))
+      ->check(between(1, 1e7))
+      ->type_name("N");
+  command
+      .add_option("--resolution", options.resolution,
+                  fmt::format("pixels along each side of a view (default: {}; where a processor traces, {})",
+                              compare.measure.resolution, kResolutionOnCpu))
+      ->check(between(1, kMaxViewResolution))
+      ->type_name("N");
+}
+
+}  // namespace
+
+void addCompareCommand(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("compare", "Compare methods at equal budgets: sets, missing rays and pixel error");
+  const auto options = std::make_shared<CompareCommand>();
+  options->options.params.threshold = 0;
+  declareFiles(*command, *options);
+  declareComparison(*command, *options);
+  declareMachine(*command, options->device, options->device_options, options->spatial_splits);
+  declareSampling(*command, options->options.params);
+  command->callback([command, options] {
+    CompareOptions& compare = options->options;
+    if (command->count("--rays") + command->count("--seconds") == 0) {
+      throw CLI::ValidationError("compare", "give a budget: --rays N or --seconds S");
+    }
+    if (!options->methods.empty()) compare.methods.clear();
+    for (const std::string& name : options->methods) compare.methods.push_back(*methodOf(name));
+    // The budget ends a bake, so that all spend the same; only who asks for T gets it.
+    if (command->count("--threshold") == 0) compare.params.threshold = 0;
+    compare.seed = compare.params.seed;
+    run(*options);
+  });
+}
+
+}  // namespace sightline
