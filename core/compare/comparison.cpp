@@ -153,6 +153,13 @@ void checkOptions(const CompareOptions& options) {
   checkParams(options.params);
 }
 
+void warmUp(std::span<Device* const> devices, const Scene& scene, const ViewCell& cell,
+            const CompareOptions& options, const CompareEvents& events) {
+  for (size_t m = 0; m < options.methods.size(); ++m) {
+    bakeOnce(*devices[m], scene, cell, 0, options, options.methods[m], options.seed, events);
+  }
+}
+
 CellComparison compareCell(std::span<Device* const> devices, const Scene& scene, const ViewCell& cell,
                            uint32_t cell_index, const CompareOptions& options, const CompareEvents& events) {
   std::vector<Baked> bakes;

@@ -61,6 +61,11 @@ struct CompareEvents {
 /// Throws Error (wrong usage) that names the option that is out of range. Every method needs a budget.
 void checkOptions(const CompareOptions& options);
 
+/// One bake of the cell by every method, which does not count: drivers compile shaders and make buffers when
+/// they are first needed. Throws Error, Interrupted.
+void warmUp(std::span<Device* const> devices, const Scene& scene, const ViewCell& cell,
+            const CompareOptions& options, const CompareEvents& events = {});
+
 /// Bakes the cell by every method with every seed, one after the other, and measures all these sets with the
 /// same views and rays. devices: one a method; the first traces the views. What a state is worth is decided
 /// by what was in the set, so time spent on measuring does not count. With a budget of rays the result is
