@@ -121,6 +121,7 @@ void saveReports(const CompareCommand& command, const ComparisonReport& report) 
 
 void run(const CompareCommand& command) {
   checkOptions(command.options);
+  for (const Method method : command.options.methods) requireMethodOn(method, command.device);
   const std::array outputs = {command.report, command.html, command.csv};
   requireSeparate(outputs, std::array{command.scene, command.cells});
   for (const auto& output : outputs) {
