@@ -16,9 +16,9 @@ namespace sightline {
 struct BakeParams {
   Method method = Method::kGvspp;
   uint32_t n_rand = 10'000'000;         ///< random rays an iteration, 1 .. 2^32 - 3
-  uint32_t n_abs_edge = 20;             ///< samples along each long edge of the border polygon, 0..1000
-  uint32_t n_rs_edge = 20;              ///< samples along each edge of the view cell's faces, 0..1000
-  uint32_t n_rs_area = 20;              ///< samples on the view cell's faces, 0..100000
+  uint32_t n_abs_edge = 30;             ///< samples along each long edge of the border polygon, 0..1000
+  uint32_t n_rs_edge = 3;               ///< samples along each edge of the view cell's faces, 0..1000
+  uint32_t n_rs_area = 4;               ///< samples on the view cell's faces, 0..100000
   float delta_abs_relative = 0x1p-17f;  ///< border distance, share of the distance from the ray's origin
   float delta_abs = 0;                  ///< border distance in world units (thesis: 0.001), added
   float delta_rs_relative = 0x1p-10f;   ///< discontinuity threshold, share of the distance
