@@ -25,6 +25,9 @@ constexpr uint32_t kRandomLaunchRays = 1u << 22;
 /// all rays at most. Those that fail soon, while the error is large, hold up nothing.
 constexpr uint64_t kRaysBetweenTests = 4;
 
+/// No border batch yet.
+constexpr uint32_t kNoBatch = 0xffffffffu;
+
 /// One cell's bake in progress.
 class CellBake {
  public:
@@ -79,7 +82,7 @@ class CellBake {
     device_.insertContained(unseen);
     stats_.contained_triangles = unseen.size();
     pvs_size_ += static_cast<uint32_t>(unseen.size());
-    explored_ = pvs_size_;
+    explored_ = bordered_ = pvs_size_;
   }
 
   /// Fresh random rays of other shifts; counts those that hit something outside the set.
@@ -163,7 +166,7 @@ class CellBake {
     });
     next_point_ += params_.n_rand;
     close(kStageRandom, stats_.random, start);
-    if (!explores()) explored_ = pvs_size_;
+    if (!explores()) explored_ = bordered_ = pvs_size_;
     return more;
   }
 
@@ -180,31 +183,50 @@ class CellBake {
       more = finishLaunch(kStageRandom, stats_.random);
     }
     close(kStageRandom, stats_.random, start);
-    explored_ = pvs_size_;
+    explored_ = bordered_ = pvs_size_;
     return more;
   }
 
   /// Border and reverse rays until no unexplored triangle is left. false: a limit was reached.
+  ///
+  /// A border ray finds twenty to fifty times as many triangles as a reverse ray (docs/evaluation.md), so
+  /// those of all triangles go first: a bake that a limit ends has found most by then. For the reverse rays
+  /// of a batch its border rays are traced once more, unless they were the last. Of gvs, reverse rays are
+  /// few, and go along.
   bool explore() {
-    const uint32_t entries_per_batch = std::max(1u, params_.batch_rays / borderRayCount(stage_params_));
     while (explored_ < pvs_size_) {
-      const auto start = Clock::now();
-      const uint32_t count = std::min(entries_per_batch, pvs_size_ - explored_);
-      const uint32_t discontinuities = device_.traceBorder(explored_, count);
-      in_work_ = count;
-      reverse_left_ = uint64_t(discontinuities) * reverseRayCount(stage_params_);
-      const bool more = finishLaunch(kStageBorder, stats_.border);
-      close(kStageBorder, stats_.border, start);
-      if (!more || !reverse(discontinuities)) return false;
-      explored_ += count;
+      if (params_.method != Method::kGvs) {
+        while (bordered_ < pvs_size_) {
+          if (!border(bordered_)) return false;
+        }
+      }
+      if (batch_first_ != explored_ && !border(explored_)) return false;
+      in_work_ = batch_count_;
+      if (!reverse(batch_discontinuities_)) return false;
+      explored_ += batch_count_;
       in_work_ = 0;
     }
     return true;
   }
 
+  /// Border rays of the entries from `first`, as many as a batch holds; remembers the batch. false: a limit
+  /// was reached.
+  bool border(uint32_t first) {
+    const auto start = Clock::now();
+    const uint32_t entries_per_batch = std::max(1u, params_.batch_rays / borderRayCount(stage_params_));
+    batch_first_ = first;
+    batch_count_ = std::min(entries_per_batch, pvs_size_ - first);
+    batch_discontinuities_ = device_.traceBorder(first, batch_count_);
+    const bool more = finishLaunch(kStageBorder, stats_.border);
+    close(kStageBorder, stats_.border, start);
+    bordered_ = std::max(bordered_, first + batch_count_);
+    return more;
+  }
+
   bool reverse(uint32_t discontinuities) {
     const uint32_t per_item = reverseRayCount(stage_params_);
     if (per_item == 0) return true;
+    reverse_left_ = uint64_t(discontinuities) * per_item;
     const uint32_t items_per_batch = std::max(1u, params_.batch_rays / per_item);
     for (uint32_t item = 0; item < discontinuities;) {
       const auto start = Clock::now();
@@ -272,10 +294,10 @@ class CellBake {
   /// last.
   double raysDue() const {
     const uint32_t taken_up = explored_ + in_work_;
-    const double per_entry =
-        taken_up == 0 ? double(borderRayCount(stage_params_))
-                      : double(stats_.border.rays + stats_.reverse.rays + reverse_left_) / taken_up;
-    return double(random_left_) + double(reverse_left_) + double(pvs_size_ - taken_up) * per_entry +
+    const double border_each = double(borderRayCount(stage_params_));
+    const double reverse_each = taken_up == 0 ? 0 : double(stats_.reverse.rays + reverse_left_) / taken_up;
+    return double(random_left_) + double(reverse_left_) + double(pvs_size_ - bordered_) * border_each +
+           double(pvs_size_ - taken_up) * (border_each + reverse_each) +
            double(params_.validation_rays - stats_.validation_rays);
   }
 
@@ -293,9 +315,12 @@ class CellBake {
   uint64_t rays_ = 0;
   uint32_t random_left_ = 0;  ///< random rays of this iteration still to trace
   uint32_t pvs_size_ = 0;
-  uint32_t explored_ = 0;      ///< entries of the list that need no more exploration
-  uint32_t in_work_ = 0;       ///< entries after them whose border rays have been traced
-  uint64_t reverse_left_ = 0;  ///< reverse rays of these still to trace
+  uint32_t explored_ = 0;  ///< entries of the list that need no more exploration
+  uint32_t in_work_ = 0;   ///< entries after them whose reverse rays are being traced
+  uint32_t bordered_ = 0;  ///< entries whose border rays have been traced
+  uint32_t batch_first_ = kNoBatch, batch_count_ = 0;  ///< entries of the last border batch ...
+  uint32_t batch_discontinuities_ = 0;                 ///< ... and how many discontinuities it met
+  uint64_t reverse_left_ = 0;                          ///< reverse rays of these still to trace
   uint32_t iteration_new_ = 0;
   uint64_t next_test_ = 0;  ///< rays traced when the error is next tested against the target
   bool validating_ = false;
