@@ -114,6 +114,13 @@ void save(const std::filesystem::path& path, const std::string& text) {
 void saveReports(const CompareCommand& command, const ComparisonReport& report) {
   if (report.cells.empty()) return;
   std::fputs(("\n" + comparisonTable(report)).c_str(), stdout);
+  for (const CellComparison& cell : report.cells) {
+    for (const MethodRun& run : cell.runs) {
+      if (run.points.back().state.size > 0) continue;
+      fmt::print("{}, {}: no batch of rays ended within the budget; --n-rand makes them smaller\n",
+                 cell.cell.name, methodName(run.method));
+    }
+  }
   save(command.report, comparisonJson(report));
   save(command.csv, comparisonCsv(report));
   if (!command.html.empty()) comparisonPage(report).save(command.html);
@@ -148,9 +155,9 @@ void run(const CompareCommand& command) {
              report.device.name, report.options.measure.views, report.options.measure.resolution,
              report.options.measure.resolution);
   StopSignal stop;
-  const bool whole = compareCells(scene, cells, devices, stop, report);
+  report.complete = compareCells(scene, cells, devices, stop, report);
   saveReports(command, report);
-  if (!whole) throw ExitCode{stop.exitCode()};
+  if (!report.complete) throw ExitCode{stop.exitCode()};
 }
 
 void declareFiles(CLI::App& command, CompareCommand& options) {

@@ -89,6 +89,7 @@ void run(const CrosscheckCommand& command) {
   fmt::print("traced in {}, judged in {}\n", shortDuration(report.trace_seconds),
              shortDuration(report.judge_seconds));
   Json json = crosscheckJson(head, report);
+  json["complete"] = stop.exitCode() == 0;
   if (command.pvs && stop.exitCode() == 0)
     json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers);
   if (!command.report.empty()) {
@@ -96,7 +97,10 @@ void run(const CrosscheckCommand& command) {
     file.write(jsonText(json));
     file.commit();
   }
-  if (stop.exitCode() != 0) throw ExitCode{stop.exitCode()};
+  if (stop.exitCode() != 0) {
+    fmt::print("stopped: the table holds what was traced by then\n");
+    throw ExitCode{stop.exitCode()};
+  }
   const auto past = pastLimits(report, command.limits);
   for (const std::string& line : past) fmt::print("past the limit: {}\n", line);
   if (!past.empty()) throw ExitCode{kExitPastLimit};
@@ -105,6 +109,7 @@ void run(const CrosscheckCommand& command) {
 void declareLimits(CLI::App& command, CrosscheckLimits& limits) {
   const auto count = [&](const char* name, auto& limit, const char* help) {
     command.add_option(name, limit, help)
+        ->check(between(0, 1e18))
         ->type_name("N")
         ->group("Limits of any one device (else exit code 3)");
   };
@@ -144,20 +149,21 @@ void addCrosscheckCommand(CLI::App& app) {
   command
       ->add_option("--check-every", options->options.check_every,
                    "the judge looks at 1 in so many rays on which all agree (0: none)")
+      ->check(between(0, 1e18))
       ->type_name("N")
       ->capture_default_str();
   command
       ->add_option("--rounding", options->options.rounding.steps,
                    "float steps beside an edge that count as rounding")
-      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->check(between(0, 1e6))
       ->type_name("STEPS")
       ->capture_default_str();
   command->add_option("--scale", options->scale, "multiply scene and cells by this first")
-      ->check(CLI::Range(1e-38, 1e38).description(""))
+      ->check(between(1e-38, 1e38))
       ->type_name("X")
       ->capture_default_str();
   command->add_option("--move", options->move, "then move them by this along x, y and z")
-      ->check(CLI::Range(-1e30, 1e30).description(""))
+      ->check(between(-1e30, 1e30))
       ->type_name("X")
       ->capture_default_str();
   command->add_option("--report", options->report, "write everything as JSON (docs/report.md)")

@@ -90,7 +90,7 @@ void chooseSize(const MeasureCommand& command, MeasureReport& report) {
   report.options.resolution =
       command.resolution.value_or(small ? kResolutionOnCpu : report.options.resolution);
   checkOptions(report.options);
-  const bool chosen = !command.views || !command.resolution;
+  const bool chosen = !command.views && !command.resolution;
   fmt::print("{} views of {} x {} pixels a cell{}, field of view {:g} degrees, seed {}\n",
              report.options.views, report.options.resolution, report.options.resolution,
              chosen && small ? " (the defaults of a processor)" : "", report.options.fov,

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/number_checks.h"
 #include "core/crosscheck/verify.h"
 #include "core/error.h"
 #include "core/pvs/pvs_writer.h"
@@ -55,7 +56,9 @@ bool pastLimits(const VerifyCommand& command, const std::vector<CellProofs>& cel
 
 void run(const VerifyCommand& command) {
   requireSeparate(std::array{command.output, command.report}, std::array{command.scene, command.pvs});
-  if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
+  for (const auto& output : {command.output, command.report}) {
+    if (!output.empty()) OutputFile probe(output);  // fail before the work, not after it
+  }
   PvsFile pvs = loadFinishedCells(command.pvs);
   if (!pvs.has_witnesses) {
     throw Error(fmt::format("{}: has no witnesses; bake it with --witnesses", command.pvs.string()));
@@ -87,16 +90,17 @@ void addVerifyCommand(CLI::App& app) {
   command
       ->add_option("--max-disproved", options->max_disproved,
                    "exit code 3 for more triangles disproved than this")
+      ->check(between(0, 1e18))
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--min-proven", options->min_proven, "exit code 3 for a smaller share proven than this")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(between(0, 1))
       ->type_name("SHARE")
       ->capture_default_str();
   command
       ->add_option("--rounding", options->options.rounding.steps,
                    "float steps beside an edge that count as rounding")
-      ->check(CLI::Range(0.0, 1e6).description(""))
+      ->check(between(0, 1e6))
       ->type_name("STEPS")
       ->capture_default_str();
   command->add_flag("--repair", options->repair, "load the scene as bake --repair did");

@@ -86,11 +86,6 @@ Baked bakeOnce(Device& device, const Scene& scene, const ViewCell& cell, uint32_
   return baked;
 }
 
-/// Rays that hit something: nothing is in a set of no prefix.
-double shareOf(uint64_t missing, uint64_t hitting) {
-  return hitting == 0 ? 0 : double(missing) / double(hitting);
-}
-
 /// The share of missing rays along the curves and at the points, by one pass of rays.
 void measureMissing(Device& device, const ViewCell& cell, uint32_t cell_index, const CompareOptions& options,
                     std::vector<Baked>& bakes) {
@@ -98,7 +93,6 @@ void measureMissing(Device& device, const ViewCell& cell, uint32_t cell_index, c
   for (Baked& baked : bakes) {
     const auto own = [](const CurvePoint& point) -> const CurvePoint& { return point; };
     std::vector<uint32_t> sizes = sizesOf(baked.run.curve, own);
-    sizes.insert(sizes.begin(), 0);
     for (const ComparePoint& point : baked.run.points) sizes.push_back(point.state.size);
     std::sort(sizes.begin(), sizes.end());
     sets.push_back({std::move(baked.set.rank), std::move(sizes)});
@@ -106,10 +100,9 @@ void measureMissing(Device& device, const ViewCell& cell, uint32_t cell_index, c
   const auto missing = countMissingRays(device, cell, cell_index, options.seed, options.missing_rays, sets);
   for (size_t b = 0; b < bakes.size(); ++b) {
     const std::vector<uint32_t>& sizes = sets[b].prefixes;
-    const uint64_t hitting = missing[b].front();
     const auto shareAt = [&](const CurvePoint& state) {
       const auto place = std::lower_bound(sizes.begin(), sizes.end(), state.size) - sizes.begin();
-      return shareOf(missing[b][size_t(place)], hitting);
+      return double(missing[b][size_t(place)]) / options.missing_rays;
     };
     for (const CurvePoint& state : bakes[b].run.curve) bakes[b].run.missing_shares.push_back(shareAt(state));
     for (ComparePoint& point : bakes[b].run.points) point.missing_share = shareAt(point.state);

@@ -30,7 +30,7 @@ struct CompareOptions {
 struct ComparePoint {
   double budget_share = 0;   ///< the state is the last within this share of the budget
   CurvePoint state;          ///< all 0 if there was none yet
-  double missing_share = 0;  ///< of rays that hit something
+  double missing_share = 0;  ///< of all rays, as after a bake
   PixelError error;
 };
 

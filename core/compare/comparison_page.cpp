@@ -130,6 +130,7 @@ HtmlReport comparisonPage(const ComparisonReport& report) {
       "{} methods with {} a cell each, on {} cells of {} triangles; {} views of {} by {} pixels a cell.",
       options.methods.size(), budgetText(options.params), report.cells.size(), report.scene.triangles,
       options.measure.views, options.measure.resolution, options.measure.resolution));
+  if (!report.complete) html.text("Stopped before all cells were compared: these are the first of them.");
   html.section("At the whole budget");
   html.table(summaryTable(report, points.back()));
   if (options.repeats > 1) {

@@ -97,6 +97,7 @@ std::string comparisonJson(const ComparisonReport& report) {
     cells.push_back(json);
   }
   const Json json = {{"sightline", report.version},
+                     {"complete", report.complete},
                      {"command", report.command},
                      {"device", toJson(std::optional(report.device))},
                      {"scene", toJson(report.scene)},

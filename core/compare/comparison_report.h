@@ -14,6 +14,7 @@ struct ComparisonReport {
   SceneSummary scene;
   DeviceInfo device;
   bool spatial_splits = false;
+  bool complete = true;  ///< false: stopped before all cells were compared
   CompareOptions options;
   std::vector<CellComparison> cells;
 };

@@ -12,8 +12,8 @@ std::string shareOf(uint64_t size, uint64_t triangles) {
 /// One line a file, averages over its cells.
 ReportTable filesTable(const MeasureReport& report) {
   ReportTable table{.caption = "Averages over cells, in pixels of a view",
-                    .columns = {"file", "method", "seed", "avg error", "max error", "avg regions",
-                                "largest region", "in the set"}};
+                    .columns = {"file", "method", "seed", "avg error", "max error, mean of cells",
+                                "avg regions", "largest region, mean of cells", "in the set"}};
   table.text_columns = 2;
   for (const MeasuredSet& set : report.sets) {
     const SceneError error = set.scene();

@@ -59,8 +59,8 @@ void checkSize(const glm::dvec3& size, const std::string& file, const std::strin
     const std::string element = fmt::format("{}[{}]", place, i);
     if (size[i] < 0.0) fail(file, element, fmt::format("{} is negative", size[i]));
     if (size[i] == 0.0) ++zeros;
-    if (size[i] > 0.0 && float(size[i]) == 0.0f) {
-      fail(file, element, fmt::format("{} is too small for single precision", size[i]));
+    if (size[i] > 0.0 && size[i] < kSmallestExtent) {
+      fail(file, element, fmt::format("{} is too small: at least {:g}, or 0", size[i], kSmallestExtent));
     }
   }
   if (zeros > 1) fail(file, place, "the cell has no area; at most one extent may be 0");

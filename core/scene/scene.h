@@ -39,6 +39,10 @@ struct Scene {
 /// distances, which the intersection test takes, must stay within single precision.
 inline constexpr float kLargestCoordinate = 0x1p40f;
 
+/// No scene's extent and no extent of a view cell (but 0) is below this: smaller ones leave the normal floats
+/// where distances are multiplied.
+inline constexpr float kSmallestExtent = 0x1p-60f;
+
 struct SceneLoadOptions {
   /// Drop triangles with an index out of range or a coordinate that is not finite or too large instead of
   /// failing.

@@ -168,6 +168,13 @@ Scene SceneBuilder::finish(const std::string& file) {
     }
     throw Error(fmt::format("{}: holds no triangles", file));
   }
+  const Bounds bounds = sceneBounds(scene_);
+  const glm::vec3 extent = bounds.high - bounds.low;
+  const float longest = std::max({extent.x, extent.y, extent.z});
+  if (longest > 0 && longest < kSmallestExtent) {
+    throw Error(fmt::format("{}: the scene is {:g} long, too small to trace; scale it to {:g} or more", file,
+                            longest, kSmallestExtent));
+  }
   scene_.degenerate_triangles = countDegenerate(scene_);
   return std::move(scene_);
 }

@@ -58,7 +58,11 @@ TEST(CrosscheckCommand, SaysWhatIsWrong) {
   expectRun("crosscheck " + city.input() + " --devices cpu --kinds sideways", 2, {"sideways"});
   expectRun("crosscheck " + city.input() + " --devices gpu9", 2, {"gpu9"});
   expectRun("crosscheck " + city.input() + " --devices cpu --move 1e30 --scale 1e38", 2,
-            {"beyond the largest"});
+            {"put a vertex beyond"});
+  expectRun("crosscheck " + city.input() + " --devices cpu --scale 1e-30", 2, {"smaller than"});
+  expectRun("crosscheck " + city.input() + " --devices cpu --scale nan", 2, {"nan is not a number"});
+  expectRun("crosscheck " + city.input() + " --devices cpu --rounding nan", 2, {"nan is not a number"});
+  expectRun("crosscheck " + city.input() + " --devices cpu --max-missed -1", 2, {"-1 is not a number"});
   expectRun("crosscheck " + city.input(), 2, {"--devices"});
 }
 

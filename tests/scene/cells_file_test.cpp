@@ -70,7 +70,7 @@ TEST(CellsFile, ErrorsNameThePlace) {
       {oneCell(R"("name":"a","center":[1,1,1],"size":[0,0,0])"),
        "cells.json: cells[0].size: the cell has no area; at most one extent may be 0"},
       {oneCell(R"("name":"a","center":[1,1,1],"size":[1,1e-60,1])"),
-       "cells.json: cells[0].size[1]: 1e-60 is too small for single precision"},
+       "cells.json: cells[0].size[1]: 1e-60 is too small: at least 8.67362e-19, or 0"},
       {oneCell(R"("name":"a","center":[1,1e39,1],"size":[1,1,1])"),
        "cells.json: cells[0]: reaches farther than 2^40 from the origin, too far to trace: scale scene and "
        "cells"},
