@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "core/crosscheck/ray_random.h"
@@ -183,12 +182,8 @@ OpenProof judgeWitness(const Judge& judge, const ViewCell& cell, const CellFrame
     return result;
   }
 
-  // The witness says which triangle, not where: any distance that its plane allows will do, for one that
-  // the ray starts on the smallest there is.
-  const auto plane = judge.planeDistance(judgeRay(ray), triangle);
-  const double nearest = exact.missed() ? 1 : exact.t.low;
-  const double t = plane ? std::max(plane->low, double(std::numeric_limits<float>::denorm_min())) : nearest;
-  const Ruling ruling = rule(judge, ray, {float(t), triangle}, exact, options.rounding);
+  // The witness says which triangle, not where.
+  const Ruling ruling = rule(judge, ray, {0, triangle}, exact, options.rounding, false);
   result.steps_beside = ruling.steps_beside;
   if (ruling.verdict != Verdict::kRounded) return result;
   const auto better = BetterWitness(judge, cell, triangle, witness, options).find();

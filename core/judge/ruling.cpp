@@ -160,11 +160,11 @@ double floatStep(const Judge& judge, const JudgeRay& ray, uint32_t triangle) {
 }
 
 Ruling rule(const Judge& judge, const Ray& float_ray, const Hit& answer, const ExactHit& exact,
-            const RoundingLimit& limit) {
+            const RoundingLimit& limit, bool judge_distance) {
   const JudgeRay ray = judgeRay(float_ray);
   const bool hit = answer.triangle != kNoTriangle;
   if (!hit && exact.missed()) return {};
-  if (hit && (answer.triangle >= judge.triangleCount() || !(answer.t > 0)))
+  if (hit && (answer.triangle >= judge.triangleCount() || (judge_distance && !(answer.t > 0))))
     return {Verdict::kWrong, HUGE_VAL};
 
   double farthest = HUGE_VAL;  // what is surely nearer hides the answer
@@ -177,7 +177,8 @@ Ruling rule(const Judge& judge, const Ray& float_ray, const Hit& answer, const E
     if (!meets) ruling.steps_beside = seen.distance() / step;
     const DoubleRange t = possibleDistances(judge, ray, answer.triangle, limit.steps * step);
     const double rounding = std::fabs(t.high) * 4 * kFloatRounding;
-    if (ruling.steps_beside > limit.steps || answer.t < t.low - rounding || answer.t > t.high + rounding) {
+    const bool far = judge_distance && (answer.t < t.low - rounding || answer.t > t.high + rounding);
+    if (ruling.steps_beside > limit.steps || t.high <= 0 || far) {
       ruling.verdict = Verdict::kWrong;
       return ruling;
     }

@@ -38,8 +38,9 @@ double floatStep(const Judge& judge, const JudgeRay& ray, uint32_t triangle);
 /// piece of surface, joined at the corners and edges that the ray passes, as a whole. What is so near to the
 /// answer or to the origin that rounding may put it behind them is not in the way. A ray aimed at a corner
 /// inside a surface must hit it; one aimed at a silhouette, or at a gap between two surfaces that touch
-/// without sharing corners (a T-junction), may pass.
+/// without sharing corners (a T-junction), may pass. judge_distance: false for an answer that names a
+/// triangle alone.
 Ruling rule(const Judge& judge, const Ray& ray, const Hit& answer, const ExactHit& exact,
-            const RoundingLimit& limit = {});
+            const RoundingLimit& limit = {}, bool judge_distance = true);
 
 }  // namespace sightline

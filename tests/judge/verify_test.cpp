@@ -133,5 +133,23 @@ TEST(Verify, ListsWhatOnlyRoundingShows) {
   EXPECT_EQ(verifyJson({proofs})[0]["open"][0]["triangle"], 2);
 }
 
+/// A ray that passes a tiny triangle, seen edge on, by half a float step: its plane is far from it there.
+TEST(Verify, AnEdgeOnTriangleIsNotDisprovedByTheDistanceOfItsPlane) {
+  Scene scene;
+  scene.positions = {{0x1.376668p+3f, 0x1.40ae3ap-1f, -0x1.b9453p+2f},
+                     {0x1.37657p+3f, 0x1.3fc56ep-1f, -0x1.b952dep+2f},
+                     {0x1.376d74p+3f, 0x1.4045cep-1f, -0x1.b956b8p+2f}};
+  scene.triangles = {{0, 1, 2}};
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  CellPvs pvs;
+  pvs.cell = {"cell", {0x1.2e334ap+3, 0x1.69272p+1, -0x1.62abaap+2}, {0.1, 0.1, 0.1}, {0, 0, 0}};
+  pvs.triangles = {0};
+  pvs.witnesses = {{{0x1.2e334ap+3f, 0x1.69272p+1f, -0x1.62abaap+2f},
+                    {0x1.2617p-2f, -0x1.1907cap+1f, -0x1.5a6498p+0f},
+                    kStageBorder}};
+  const CellProofs proofs = verifyCell(Judge(scene, bvh), scene, pvs);
+  EXPECT_EQ(proofs.counts[size_t(Proof::kDisproved)], 0u) << verifyTable({proofs});
+}
+
 }  // namespace
 }  // namespace sightline
