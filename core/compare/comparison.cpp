@@ -14,13 +14,9 @@ namespace {
 /// Points of a curve that are kept.
 constexpr size_t kCurvePoints = 60;
 
-uint64_t raysAt(const CurvePoint& point) {
-  return point.rays[0] + point.rays[1] + point.rays[2];
-}
-
 /// How much of the budget was spent at a point of the curve, 0 ..
 double spentShare(const CurvePoint& point, const BakeParams& params) {
-  const double rays = params.max_rays > 0 ? double(raysAt(point)) / double(params.max_rays) : 0;
+  const double rays = params.max_rays > 0 ? double(point.allRays()) / double(params.max_rays) : 0;
   const double seconds = params.max_seconds > 0 ? point.seconds / params.max_seconds : 0;
   return std::max(rays, seconds);
 }
@@ -202,7 +198,7 @@ std::vector<MethodSummary> summarize(std::span<const CellComparison> cells, cons
     summary.mean_largest_region = spread([](P p) { return p.error.largest_region; });
     summary.missing_share = spread([](P p) { return p.missing_share; });
     summary.pvs_share = spread([&](P p) { return double(p.state.size) / triangle_count; });
-    summary.rays = spread([](P p) { return raysAt(p.state); });
+    summary.rays = spread([](P p) { return p.state.allRays(); });
     summary.seconds = spread([](P p) { return p.state.seconds; });
     for (const CellComparison& cell : cells) {
       for (uint32_t repeat = 0; repeat < options.repeats; ++repeat) {

@@ -10,10 +10,6 @@ namespace {
 /// Cells whose curves are drawn one by one: more would make a page that nobody scrolls through.
 constexpr size_t kDrawnCells = 10;
 
-double raysAt(const CurvePoint& point) {
-  return double(point.rays[0] + point.rays[1] + point.rays[2]);
-}
-
 std::string spreadText(const Spread& spread, const char* format, bool several, double factor = 1) {
   const auto number = [&](double value) { return fmt::format(fmt::runtime(format), value * factor); };
   if (!several) return number(spread.median);
@@ -86,6 +82,7 @@ void addErrorCharts(HtmlReport& html, const std::vector<std::vector<MethodSummar
 }
 
 void addCellCharts(HtmlReport& html, const ComparisonReport& report) {
+  const auto rays = [](const CurvePoint& p) { return double(p.allRays()); };
   const auto seconds = [](const CurvePoint& p) { return p.seconds; };
   const auto size = [](const MethodRun& run, size_t i) { return double(run.curve[i].size); };
   const auto missing = [](const MethodRun& run, size_t i) { return run.missing_shares[i]; };
@@ -95,11 +92,11 @@ void addCellCharts(HtmlReport& html, const ComparisonReport& report) {
   for (size_t c = 0; c < std::min(report.cells.size(), kDrawnCells); ++c) {
     const CellComparison& cell = report.cells[c];
     const std::string& name = cell.cell.name;
-    charts.push_back(cellChart(report, cell, name + ": set over rays", "rays", "triangles", raysAt, size));
+    charts.push_back(cellChart(report, cell, name + ": set over rays", "rays", "triangles", rays, size));
     charts.push_back(
         cellChart(report, cell, name + ": set over seconds", "seconds", "triangles", seconds, size));
     charts.push_back(
-        cellChart(report, cell, name + ": missing rays over rays", "rays", "share", raysAt, missing));
+        cellChart(report, cell, name + ": missing rays over rays", "rays", "share", rays, missing));
     charts.push_back(
         cellChart(report, cell, name + ": missing rays over seconds", "seconds", "share", seconds, missing));
   }

@@ -9,16 +9,12 @@
 namespace sightline {
 namespace {
 
-uint64_t raysAt(const CurvePoint& point) {
-  return point.rays[0] + point.rays[1] + point.rays[2];
-}
-
 Json toJson(const Spread& spread) {
   return {{"low", spread.low}, {"median", spread.median}, {"high", spread.high}};
 }
 
 Json stateJson(const CurvePoint& state, double missing_share) {
-  return {{"seconds", state.seconds},      {"rays", raysAt(state)},
+  return {{"seconds", state.seconds},      {"rays", state.allRays()},
           {"rays_by_stage", state.rays},   {"new_by_stage", state.new_triangles},
           {"iteration", state.iteration},  {"triangles", state.size},
           {"missing_share", missing_share}};
@@ -125,7 +121,7 @@ std::string comparisonCsv(const ComparisonReport& report) {
     for (const MethodRun& run : cell.runs) {
       for (const ComparePoint& p : run.points) {
         csv.row({cell.cell.name, methodName(run.method), number(run.seed), number(p.budget_share),
-                 number(p.state.seconds), number(raysAt(p.state)), number(p.state.rays[0]),
+                 number(p.state.seconds), number(p.state.allRays()), number(p.state.rays[0]),
                  number(p.state.rays[1]), number(p.state.rays[2]), number(p.state.size),
                  number(p.missing_share), number(p.error.averageWrong()), number(p.error.max_wrong),
                  number(p.error.averageRegions()), number(p.error.largest_region)});

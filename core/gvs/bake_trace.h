@@ -12,6 +12,9 @@ struct CurvePoint {
   std::array<uint64_t, 3> new_triangles{};  ///< as rays
   uint32_t size = 0;                        ///< triangles in the set: the first of BakeTrace::order
   uint32_t iteration = 0;                   ///< 1, 2, ...
+
+  /// Of the three stages.
+  uint64_t allRays() const { return rays[0] + rays[1] + rays[2]; }
   bool operator==(const CurvePoint&) const = default;
 };
 

@@ -19,10 +19,6 @@ constexpr uint32_t kStageColors[] = {1, 0, 2};
 
 using Curve = std::vector<CurvePoint>;
 
-uint64_t raysOf(const CurvePoint& point) {
-  return point.rays[0] + point.rays[1] + point.rays[2];
-}
-
 /// The last point of each iteration.
 Curve iterationEnds(const Curve& curve) {
   Curve ends;
@@ -69,7 +65,8 @@ ReportChart stageChart(const std::string& title, const std::string& y, const Cur
   ReportChart chart{.title = title, .x = "rays", .y = y, .log_x = true, .log_y = true};
   for (uint32_t stage = 0; stage < 3; ++stage) {
     ChartSeries line{.name = stageName(stage), .color = kStageColors[stage]};
-    for (const CurvePoint& p : curve) line.points.push_back({double(raysOf(p)), double((p.*counts)[stage])});
+    for (const CurvePoint& p : curve)
+      line.points.push_back({double(p.allRays()), double((p.*counts)[stage])});
     if (!curve.empty() && (curve.back().*counts)[stage] > 0) chart.series.push_back(line);
   }
   return chart;
@@ -124,7 +121,7 @@ void addGrowth(HtmlReport& html, const BakeReport& report, const std::vector<Cur
                           report.cells.size() - recorded, report.cells.size()));
   }
   if (recorded == 0) return;
-  html.charts({sizeChart(report, curves, "rays", [](const CurvePoint& p) { return double(raysOf(p)); }),
+  html.charts({sizeChart(report, curves, "rays", [](const CurvePoint& p) { return double(p.allRays()); }),
                sizeChart(report, curves, "seconds", [](const CurvePoint& p) { return p.seconds; })});
   html.section("Stage by stage");
   html.text("Rays that each stage has traced, and triangles that it has found, over the rays of all stages.");

@@ -209,7 +209,7 @@ TEST_P(Methods, TheTraceTellsHowTheSetGrew) {
 
     // The same bake, stopped in the middle of the curve.
     const CurvePoint middle = trace.curve[trace.curve.size() / 2];
-    p.max_rays = middle.rays[0] + middle.rays[1] + middle.rays[2];
+    p.max_rays = middle.allRays();
     const CellPvs part = bakeCell(*device, scene, cell, 0, p);
     std::vector<uint32_t> prefix(trace.order.begin(), trace.order.begin() + middle.size);
     std::sort(prefix.begin(), prefix.end());
