@@ -82,7 +82,7 @@ bool isAimed(RayKind kind) {
 
 RayMaker::RayMaker(const Scene& scene, const ViewCell& cell, uint32_t cell_index, Device& device,
                    uint64_t seed, uint64_t rays)
-    : scene_(scene), faces_(cellFaces(cell)), key_(mixBits(mixBits(seed) ^ cell_index)) {
+    : scene_(scene), faces_(cellFaces(cell)), key_(splitmix(splitmix(seed) ^ cell_index)) {
   const Bounds bounds = sceneBounds(scene);
   const vec3 extent = bounds.high - bounds.low, half = glm::abs(vec3(faces_[0].corner) - bounds.low);
   reach_ = std::max(maxAbs3(extent), maxAbs3(half));
