@@ -146,16 +146,10 @@ void drawCells(const BakeOptions& options, const Scene& scene, Device& device, B
   }
 }
 
-void writeText(const std::filesystem::path& path, const std::string& text) {
-  OutputFile file(path);
-  file.write(text);
-  file.commit();
-}
-
 void writePage(const BakeOptions& options, const BakeReport& report, BakePage& page) {
   page.curves.resize(report.cells.size());
   page.command = commandLine();
-  if (!options.csv.empty()) writeText(options.csv, curvesCsv(report, page.curves));
+  if (!options.csv.empty()) saveText(curvesCsv(report, page.curves), options.csv);
   if (!options.html.empty()) bakePage(report, page).save(options.html);
 }
 
@@ -163,7 +157,7 @@ void writeReport(const BakeOptions& options, const Bake& bake, BakeReport& repor
   report.cells = bake.finished();
   report.baked_on = bake.head().device;
   report.peak_process_bytes = peakProcessBytes();
-  if (!options.report.empty()) writeText(options.report, reportJson(report));
+  if (!options.report.empty()) saveText(reportJson(report), options.report);
 }
 
 void runBake(const BakeOptions& options) {

@@ -104,13 +104,6 @@ bool compareCells(const Scene& scene, const std::vector<ViewCell>& cells, const 
   return true;
 }
 
-void save(const std::filesystem::path& path, const std::string& text) {
-  if (path.empty()) return;
-  OutputFile file(path);
-  file.write(text);
-  file.commit();
-}
-
 void saveReports(const CompareCommand& command, const ComparisonReport& report) {
   if (report.cells.empty()) return;
   std::fputs(("\n" + comparisonTable(report)).c_str(), stdout);
@@ -121,8 +114,8 @@ void saveReports(const CompareCommand& command, const ComparisonReport& report) 
                  cell.cell.name, methodName(run.method));
     }
   }
-  save(command.report, comparisonJson(report));
-  save(command.csv, comparisonCsv(report));
+  if (!command.report.empty()) saveText(comparisonJson(report), command.report);
+  if (!command.csv.empty()) saveText(comparisonCsv(report), command.csv);
   if (!command.html.empty()) comparisonPage(report).save(command.html);
 }
 

@@ -92,11 +92,7 @@ void run(const CrosscheckCommand& command) {
   json["complete"] = stop.exitCode() == 0;
   if (command.pvs && stop.exitCode() == 0)
     json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers);
-  if (!command.report.empty()) {
-    OutputFile file(command.report);
-    file.write(jsonText(json));
-    file.commit();
-  }
+  if (!command.report.empty()) saveText(jsonText(json), command.report);
   if (stop.exitCode() != 0) {
     fmt::print("stopped: the table holds what was traced by then\n");
     throw ExitCode{stop.exitCode()};

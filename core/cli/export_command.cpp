@@ -19,12 +19,6 @@ struct ExportOptions {
   std::string cell, format;
 };
 
-void saveText(const std::string& text, const std::filesystem::path& file) {
-  OutputFile out(file);
-  out.write(text);
-  out.commit();
-}
-
 /// saveScene goes by the extension, so it must say the same as --format.
 void requireExtension(const ExportOptions& options) {
   if (lowerExtension(options.out) == "." + options.format) return;

@@ -171,13 +171,6 @@ void measureAll(const MeasureCommand& command, const Scene& scene, Device& devic
   report.seconds = seconds();
 }
 
-void save(const std::filesystem::path& path, const std::string& text) {
-  if (path.empty()) return;
-  OutputFile file(path);
-  file.write(text);
-  file.commit();
-}
-
 /// The pictures that were drawn, with what they show.
 std::vector<ReportPicture> readPictures(const MeasureCommand& command, const MeasureReport& report) {
   std::vector<ReportPicture> pictures;
@@ -225,8 +218,8 @@ void run(const MeasureCommand& command) {
     fmt::print("stopped: {} of {} cells are measured\n", report.sets.front().cells.size(), cells.size());
   }
   fmt::print("{} rays in {}\n", shortCount(report.rays), shortDuration(report.seconds));
-  save(command.report, jsonText(measureJson(report)));
-  save(command.csv, measureCsv(report));
+  if (!command.report.empty()) saveText(jsonText(measureJson(report)), command.report);
+  if (!command.csv.empty()) saveText(measureCsv(report), command.csv);
   if (!command.html.empty())
     measurePage(report, readPictures(command, report), commandLine()).save(command.html);
   if (stop.exitCode() != 0) throw ExitCode{stop.exitCode()};

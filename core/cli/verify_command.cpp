@@ -31,9 +31,7 @@ void writeReport(const VerifyCommand& command, const PvsFile& pvs, const std::ve
       {"device", pvs.device},
       {"rounding_steps", command.options.rounding.steps},
       {"cells", verifyJson(cells)}};
-  OutputFile file(command.report);
-  file.write(jsonText(json));
-  file.commit();
+  saveText(jsonText(json), command.report);
 }
 
 /// Says whether the result is past the limits.

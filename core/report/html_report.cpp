@@ -129,9 +129,7 @@ std::string HtmlReport::html() const {
 }
 
 void HtmlReport::save(const std::filesystem::path& file) const {
-  OutputFile output(file);
-  output.write(html());
-  output.commit();
+  saveText(html(), file);
 }
 
 }  // namespace sightline

@@ -146,9 +146,7 @@ void saveCells(const std::vector<ViewCell>& cells, const std::filesystem::path& 
     throw Error(fmt::format("{}: a cell's name is not valid UTF-8", file.string()));
   }
   text += "]}\n";
-  OutputFile output(file);
-  output.write(text);
-  output.commit();
+  saveText(text, file);
 }
 
 }  // namespace sightline

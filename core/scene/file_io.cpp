@@ -98,6 +98,12 @@ void OutputFile::commit() {
   if (std::fclose(stream) != 0) fail("close");
 }
 
+void saveText(std::string_view text, const std::filesystem::path& file) {
+  OutputFile output(file);
+  output.write(text);
+  output.commit();
+}
+
 void makeFolder(const std::filesystem::path& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);

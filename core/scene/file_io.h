@@ -45,6 +45,9 @@ class OutputFile {
   std::FILE* stream_ = nullptr;
 };
 
+/// Writes all of a file (OutputFile).
+void saveText(std::string_view text, const std::filesystem::path& file);
+
 /// Makes the folder and those above it, where they are missing. Throws Error.
 void makeFolder(const std::filesystem::path& folder);
 
