@@ -3,13 +3,13 @@
 #include <array>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "core/cli/bake_options.h"
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
+#include "core/cli/view_options.h"
 #include "core/compare/comparison_report.h"
 #include "core/device/naive_device.h"
 #include "core/error.h"
@@ -25,16 +25,10 @@ struct CompareCommand {
   std::vector<std::string> methods;
   std::string device = "opencl";
   DeviceOptions device_options;
-  std::optional<uint32_t> views, resolution;
+  ViewOptions views;
   CompareOptions options;
   bool spatial_splits = false, repair = false;
 };
-
-void chooseSize(const CompareCommand& command, bool small, MeasureOptions& measure) {
-  measure = command.options.measure;
-  measure.views = command.views.value_or(small ? kViewsOnCpu : measure.views);
-  measure.resolution = command.resolution.value_or(small ? kResolutionOnCpu : measure.resolution);
-}
 
 /// One device a method: the methods that work on the same kind share one.
 class Devices {
@@ -142,7 +136,7 @@ void run(const CompareCommand& command) {
   report.device = devices.main().info();
   report.spatial_splits = command.spatial_splits;
   report.options = command.options;
-  chooseSize(command, report.device.on_cpu, report.options.measure);
+  report.options.measure = chooseViews(command.views, report.device.on_cpu, command.options.measure);
   fmt::print("{}: {} triangles, {} cells; {}, {}; {} views of {} x {} pixels a cell\n",
              command.scene.string(), scene.triangles.size(), cells.size(), report.device.id,
              report.device.name, report.options.measure.views, report.options.measure.resolution,
@@ -191,18 +185,7 @@ void declareComparison(CLI::App& command, CompareCommand& options) {
       ->check(between(1, double(1u << 30)))
       ->type_name("N")
       ->capture_default_str();
-  command
-      .add_option("--views", options.views,
-                  fmt::format("views of each cell (default: {}; where a processor traces, {})",
-                              compare.measure.views, kViewsOnCpu))
-      ->check(between(1, 1e7))
-      ->type_name("N");
-  command
-      .add_option("--resolution", options.resolution,
-                  fmt::format("pixels along each side of a view (default: {}; where a processor traces, {})",
-                              compare.measure.resolution, kResolutionOnCpu))
-      ->check(between(1, kMaxViewResolution))
-      ->type_name("N");
+  declareViews(command, options.views);
 }
 
 }  // namespace

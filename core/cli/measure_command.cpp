@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <optional>
 
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
+#include "core/cli/view_options.h"
 #include "core/error.h"
 #include "core/gvs/bake_cell.h"
 #include "core/measure/measure_page.h"
@@ -34,7 +34,7 @@ struct MeasureCommand {
   std::vector<std::filesystem::path> pvs;
   std::vector<std::string> cells;
   std::string device = "opencl";
-  std::optional<uint32_t> views, resolution;
+  ViewOptions views;
   MeasureOptions options;
   double max_average = std::numeric_limits<double>::infinity();
   double max_wrong = std::numeric_limits<double>::infinity();
@@ -85,12 +85,9 @@ std::vector<uint32_t> cellsToMeasure(const MeasureCommand& command, const PvsFil
 /// The defaults that the device can afford.
 void chooseSize(const MeasureCommand& command, MeasureReport& report) {
   const bool small = report.device.on_cpu;
-  report.options = command.options;
-  report.options.views = command.views.value_or(small ? kViewsOnCpu : report.options.views);
-  report.options.resolution =
-      command.resolution.value_or(small ? kResolutionOnCpu : report.options.resolution);
+  report.options = chooseViews(command.views, small, command.options);
   checkOptions(report.options);
-  const bool chosen = !command.views && !command.resolution;
+  const bool chosen = !command.views.views && !command.views.resolution;
   fmt::print("{} views of {} x {} pixels a cell{}, field of view {:g} degrees, seed {}\n",
              report.options.views, report.options.resolution, report.options.resolution,
              chosen && small ? " (the defaults of a processor)" : "", report.options.fov,
@@ -254,19 +251,8 @@ void declareFiles(CLI::App& command, MeasureCommand& options) {
   command.add_flag("--repair", options.repair, "load the scene as bake --repair did");
 }
 
-void declareViews(CLI::App& command, MeasureCommand& options) {
-  command
-      .add_option("--views", options.views,
-                  fmt::format("views of each cell (default: {}; where a processor traces, {})",
-                              options.options.views, kViewsOnCpu))
-      ->check(between(1, kMaxMeasureViews))
-      ->type_name("N");
-  command
-      .add_option("--resolution", options.resolution,
-                  fmt::format("pixels along each side of a view (default: {}; where a processor traces, {})",
-                              options.options.resolution, kResolutionOnCpu))
-      ->check(between(1, kMaxMeasureResolution))
-      ->type_name("N");
+void declareMeasure(CLI::App& command, MeasureCommand& options) {
+  declareViews(command, options.views);
   command.add_option("--fov", options.options.fov, "field of view, degrees")
       ->check(between(kSmallestFov, kLargestFov))
       ->type_name("DEGREES")
@@ -293,7 +279,7 @@ void addMeasureCommand(CLI::App& app) {
       "measure", "Measure the pixel error: how much of what a cell sees is missing from its set");
   const auto options = std::make_shared<MeasureCommand>();
   declareFiles(*command, *options);
-  declareViews(*command, *options);
+  declareMeasure(*command, *options);
   command->callback([options] { run(*options); });
 }
 

@@ -74,5 +74,15 @@ TEST_F(CompareCommand, RefusesWhatMakesNoSense) {
   expectRefused("--rays 1000 --report " + scene(), "read and replaced");
 }
 
+/// Before the bakes, not after them.
+TEST_F(CompareCommand, RefusesMoreViewsThanMeasureTakes) {
+  for (const char* option : {"--views 1000001", "--resolution 4097"}) {
+    const ProgramRun run =
+        runProgram("compare " + scene() + " --cells " + cells() + " --device cpu --rays 1000 " + option);
+    EXPECT_EQ(run.exit_code, 2) << run.output;
+    EXPECT_NE(run.output.find("is not a number from 1 to"), std::string::npos) << run.output;
+  }
+}
+
 }  // namespace
 }  // namespace sightline::test
