@@ -23,22 +23,30 @@ class Classifier {
   std::span<const ImageError> errors(size_t set, uint32_t view) const;
 
  private:
+  /// Pixels of one row side by side that show the same triangle.
+  struct Stretch {
+    uint32_t first, last, triangle;
+  };
   struct Scratch {
     explicit Scratch(uint32_t resolution) : regions(resolution) {}
     ErrorRegions regions;
-    std::vector<uint32_t> suspects, pixels;
-    std::vector<uint16_t> levels;
+    std::vector<Stretch> suspects;
+    std::vector<PixelRun> runs;
   };
   struct Set {
-    std::vector<uint16_t> levels;  ///< missingLevels
-    size_t prefixes = 0;
+    std::vector<uint16_t> levels;    ///< missingLevels, those of prefix 0 not counted
+    size_t empty = 0;                ///< prefixes that are 0: of nothing
+    size_t prefixes = 0;             ///< all, those of nothing first
     std::vector<ImageError> errors;  ///< view by view, of each all prefixes
   };
 
   void classifyView(uint32_t view, std::span<const uint32_t> image);
+  void splitImage(std::span<const uint32_t> image, Scratch& scratch) const;
+  void addRun(std::vector<PixelRun>& runs, const PixelRun& run) const;
 
   uint32_t resolution_;
-  std::vector<uint8_t> suspect_;  ///< a triangle: missed by some prefix of some set
+  std::vector<uint8_t> suspect_;  ///< a triangle: missed by some prefix of some set that is not of nothing
+  bool any_empty_ = false;        ///< some set has a prefix of nothing
   std::vector<Set> sets_;
   tbb::enumerable_thread_specific<Scratch> scratch_;
 };

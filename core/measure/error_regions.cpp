@@ -16,25 +16,21 @@ constexpr uint32_t kFree = 0xffffffffu;
 ErrorRegions::ErrorRegions(uint32_t resolution)
     : resolution_(resolution), run_of_(size_t(resolution) * resolution, kFree) {}
 
-void ErrorRegions::makeRuns(std::span<const uint32_t> pixels, std::span<const uint16_t> levels) {
+void ErrorRegions::markRuns(std::span<const PixelRun> runs) {
   runs_.clear();
-  for (size_t i = 0; i < pixels.size(); ++i) {
-    const uint32_t pixel = pixels[i];
-    const bool goes_on =
-        i > 0 && pixel == pixels[i - 1] + 1 && levels[i] == levels[i - 1] && pixel % resolution_ != 0;
-    if (!goes_on) runs_.push_back({pixel, pixel, kFree, 0, levels[i]});
-    runs_.back().last = pixel;
-    run_of_[pixel] = uint32_t(runs_.size() - 1);
+  for (const PixelRun& run : runs) {
+    std::fill(run_of_.begin() + run.first, run_of_.begin() + run.last + 1, uint32_t(runs_.size()));
+    runs_.push_back({run, kFree, 0});
   }
 }
 
 /// Counting sort by level; starts_[level] becomes where the next level starts.
 void ErrorRegions::sortRuns(size_t level_count) {
   starts_.assign(level_count + 2, 0);
-  for (const Run& run : runs_) ++starts_[run.level + 1];
+  for (const Run& run : runs_) ++starts_[run.pixels.level + 1];
   for (size_t level = 1; level < starts_.size(); ++level) starts_[level] += starts_[level - 1];
   order_.resize(runs_.size());
-  for (uint32_t i = 0; i < runs_.size(); ++i) order_[starts_[runs_[i].level]++] = i;
+  for (uint32_t i = 0; i < runs_.size(); ++i) order_[starts_[runs_[i].pixels.level]++] = i;
 }
 
 uint32_t ErrorRegions::root(uint32_t run) {
@@ -48,7 +44,7 @@ uint32_t ErrorRegions::joinRow(uint32_t region, uint32_t first, uint32_t last, I
   for (uint32_t pixel = first; pixel <= last; ++pixel) {
     const uint32_t run = run_of_[pixel];
     if (run == kFree) continue;
-    pixel = runs_[run].last;  // the rest of it is of the same region
+    pixel = runs_[run].pixels.last;  // the rest of it is of the same region
     if (runs_[run].parent == kFree) continue;
     uint32_t other = root(run);
     if (other == region) continue;
@@ -62,10 +58,11 @@ uint32_t ErrorRegions::joinRow(uint32_t region, uint32_t first, uint32_t last, I
 
 /// Makes the pixels of a run wrong. Returns the size of their region.
 uint32_t ErrorRegions::add(uint32_t run, ImageError& error) {
-  Run& mine = runs_[run];
-  mine.parent = run;
-  mine.size = mine.last - mine.first + 1;
-  error.wrong += mine.size;
+  const PixelRun mine = runs_[run].pixels;
+  const uint32_t size = mine.last - mine.first + 1;
+  runs_[run].parent = run;
+  runs_[run].size = size;
+  error.wrong += size;
   ++error.regions;
   const uint32_t row = mine.first / resolution_, start = row * resolution_, end = start + resolution_ - 1;
   const uint32_t first = std::max(mine.first, start + 1) - 1, last = std::min(mine.last + 1, end);
@@ -75,9 +72,8 @@ uint32_t ErrorRegions::add(uint32_t run, ImageError& error) {
   return runs_[region].size;
 }
 
-void ErrorRegions::count(std::span<const uint32_t> pixels, std::span<const uint16_t> levels,
-                         std::span<ImageError> errors) {
-  makeRuns(pixels, levels);
+void ErrorRegions::count(std::span<const PixelRun> runs, std::span<ImageError> errors) {
+  markRuns(runs);
   sortRuns(errors.size());
   ImageError error;
   for (size_t level = errors.size(); level > 0; --level) {
@@ -86,7 +82,9 @@ void ErrorRegions::count(std::span<const uint32_t> pixels, std::span<const uint1
     }
     errors[level - 1] = error;
   }
-  for (const uint32_t pixel : pixels) run_of_[pixel] = kFree;
+  for (const PixelRun& run : runs) {
+    std::fill(run_of_.begin() + run.first, run_of_.begin() + run.last + 1, kFree);
+  }
 }
 
 }  // namespace sightline

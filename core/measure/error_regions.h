@@ -13,28 +13,31 @@ struct ImageError {
   bool operator==(const ImageError&) const = default;
 };
 
-/// Counts wrong pixels and their regions in square images, for a whole series of ever larger sets at once: a
-/// pixel of level n is wrong for the first n of them. Reused from image to image; not thread-safe.
+/// Pixels of one row side by side: of the same triangle, mostly. Numbered row by row.
+struct PixelRun {
+  uint32_t first, last;
+  uint16_t level;  ///< wrong for the first so many sets of a series
+};
+
+/// Counts wrong pixels and their regions in square images, for a whole series of ever larger sets at once.
+/// Reused from image to image; not thread-safe.
 class ErrorRegions {
  public:
   /// resolution: pixels a side, 1 .. 16,384.
   explicit ErrorRegions(uint32_t resolution);
 
-  /// pixels: their numbers, row by row, ascending; levels: of each, 1 .. errors.size(). errors[k] becomes
-  /// that of the pixels with a level above k.
-  void count(std::span<const uint32_t> pixels, std::span<const uint16_t> levels,
-             std::span<ImageError> errors);
+  /// runs: ascending, without a pixel in common, levels 1 .. errors.size(). errors[k] becomes that of the
+  /// runs with a level above k.
+  void count(std::span<const PixelRun> runs, std::span<ImageError> errors);
 
  private:
-  /// Pixels of one row and one level side by side: of the same triangle, mostly.
   struct Run {
-    uint32_t first, last;  ///< pixels
-    uint32_t parent;       ///< another run of its region, itself at the root; kFree: not wrong yet
-    uint32_t size;         ///< at a root: pixels of the region
-    uint16_t level;
+    PixelRun pixels;
+    uint32_t parent;  ///< another run of its region, itself at the root; kFree: not wrong yet
+    uint32_t size;    ///< at a root: pixels of the region
   };
 
-  void makeRuns(std::span<const uint32_t> pixels, std::span<const uint16_t> levels);
+  void markRuns(std::span<const PixelRun> runs);
   void sortRuns(size_t level_count);
   uint32_t root(uint32_t run);
   uint32_t add(uint32_t run, ImageError& error);

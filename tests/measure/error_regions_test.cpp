@@ -3,54 +3,30 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <random>
 
+#include "tests/measure/flood_fill.h"
+
 namespace sightline {
-
-void PrintTo(const ImageError& e, std::ostream* out) {
-  *out << e.wrong << " wrong, " << e.regions << " regions, largest " << e.largest_region;
-}
-
 namespace {
 
-/// Flood fill over the 8 neighbours.
-ImageError bruteForce(std::vector<int> wrong, int side) {
-  ImageError error;
-  error.wrong = uint32_t(std::count(wrong.begin(), wrong.end(), 1));
-  for (int start = 0; start < side * side; ++start) {
-    if (wrong[size_t(start)] == 0) continue;
-    ++error.regions;
-    uint32_t size = 0;
-    std::vector<int> open{start};
-    wrong[size_t(start)] = 0;
-    while (!open.empty()) {
-      const int pixel = open.back();
-      open.pop_back();
-      ++size;
-      for (int y = pixel / side - 1; y <= pixel / side + 1; ++y) {
-        for (int x = pixel % side - 1; x <= pixel % side + 1; ++x) {
-          if (x < 0 || y < 0 || x >= side || y >= side || wrong[size_t(y * side + x)] == 0) continue;
-          wrong[size_t(y * side + x)] = 0;
-          open.push_back(y * side + x);
-        }
-      }
-    }
-    error.largest_region = std::max(error.largest_region, size);
-  }
-  return error;
-}
+using testing_support::floodFill;
 
-std::vector<ImageError> countOf(ErrorRegions& regions, const std::vector<uint16_t>& image, size_t prefixes) {
-  std::vector<uint32_t> pixels;
-  std::vector<uint16_t> levels;
+/// Runs as long as they can be, and some in pieces.
+std::vector<ImageError> countOf(ErrorRegions& regions, int side, const std::vector<uint16_t>& image,
+                                size_t prefixes) {
+  std::vector<PixelRun> runs;
   for (uint32_t i = 0; i < image.size(); ++i) {
     if (image[i] == 0) continue;
-    pixels.push_back(i);
-    levels.push_back(image[i]);
+    const bool goes_on = i % uint32_t(side) != 0 && image[i - 1] == image[i] && i % 5 != 0;
+    if (goes_on) {
+      runs.back().last = i;
+    } else {
+      runs.push_back({i, i, image[i]});
+    }
   }
   std::vector<ImageError> errors(prefixes);
-  regions.count(pixels, levels, errors);
+  regions.count(runs, errors);
   return errors;
 }
 
@@ -65,11 +41,11 @@ TEST(ErrorRegions, CountsAsAFloodFillDoes) {
       for (uint16_t& level : image) {
         level = random() % 100 < density ? uint16_t(1 + random() % prefixes) : uint16_t(0);
       }
-      const std::vector<ImageError> errors = countOf(regions, image, prefixes);
+      const std::vector<ImageError> errors = countOf(regions, side, image, prefixes);
       for (size_t k = 0; k < prefixes; ++k) {
         std::vector<int> wrong;
         for (const uint16_t level : image) wrong.push_back(level > k ? 1 : 0);
-        ASSERT_EQ(errors[k], bruteForce(wrong, side))
+        ASSERT_EQ(errors[k], floodFill(wrong, side))
             << "side " << side << ", round " << round << ", prefix " << k;
       }
     }
@@ -83,14 +59,14 @@ TEST(ErrorRegions, CornersTouchAndEdgesDoNot) {
                                           0, 1, 0, 0,  //
                                           0, 0, 1, 0,  //
                                           0, 0, 0, 1};
-  EXPECT_EQ(countOf(regions, diagonal, 1).front(), (ImageError{4, 1, 4}));
+  EXPECT_EQ(countOf(regions, 4, diagonal, 1).front(), (ImageError{4, 1, 4}));
   const std::vector<uint16_t> edges = {0, 0, 0, 1,  //
                                        1, 0, 0, 0,  //
                                        0, 0, 0, 0,  //
                                        0, 1, 0, 0};
-  EXPECT_EQ(countOf(regions, edges, 1).front(), (ImageError{3, 3, 1}));
-  EXPECT_EQ(countOf(regions, std::vector<uint16_t>(16, 1), 1).front(), (ImageError{16, 1, 16}));
-  EXPECT_EQ(countOf(regions, std::vector<uint16_t>(16, 0), 1).front(), (ImageError{0, 0, 0}));
+  EXPECT_EQ(countOf(regions, 4, edges, 1).front(), (ImageError{3, 3, 1}));
+  EXPECT_EQ(countOf(regions, 4, std::vector<uint16_t>(16, 1), 1).front(), (ImageError{16, 1, 16}));
+  EXPECT_EQ(countOf(regions, 4, std::vector<uint16_t>(16, 0), 1).front(), (ImageError{0, 0, 0}));
 }
 
 }  // namespace
