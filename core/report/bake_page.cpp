@@ -200,11 +200,27 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
   return html;
 }
 
+namespace {
+
+/// Where a cell's bake ended, by its statistics. Its validation takes no part in a curve's seconds.
+CurvePoint endOf(const CellStats& s) {
+  CurvePoint end{s.random.seconds + s.border.seconds + s.reverse.seconds,
+                 {s.random.rays, s.border.rays, s.reverse.rays},
+                 {s.random.new_triangles, s.border.new_triangles, s.reverse.new_triangles},
+                 0,
+                 s.iterations};
+  for (const uint64_t found : end.new_triangles) end.size += uint32_t(found);
+  return end;
+}
+
+}  // namespace
+
 std::string curvesCsv(const BakeReport& report, const std::vector<Curve>& curves) {
   Csv csv({"cell", "iteration", "seconds", "random_rays", "border_rays", "reverse_rays", "random_new",
            "border_new", "reverse_new", "triangles"});
   for (size_t i = 0; i < curves.size(); ++i) {
-    for (const CurvePoint& p : curves[i]) {
+    const Curve end = {endOf(report.cells[i].stats)};
+    for (const CurvePoint& p : curves[i].empty() ? end : curves[i]) {
       std::vector<std::string> row = {report.cells[i].cell.name, std::to_string(p.iteration),
                                       fmt::format("{}", p.seconds)};
       for (const uint64_t rays : p.rays) row.push_back(std::to_string(rays));

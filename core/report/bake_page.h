@@ -24,7 +24,7 @@ std::vector<ReportFact> parameterFacts(const BakeParams& params);
 HtmlReport bakePage(const BakeReport& report, const BakePage& page);
 
 /// The points of all curves, a line each: cell, iteration, seconds, rays and new triangles by stage, set
-/// size.
+/// size. A cell without a curve has one line, for its end.
 std::string curvesCsv(const BakeReport& report, const std::vector<std::vector<CurvePoint>>& curves);
 
 }  // namespace sightline

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "tests/cli/run_program.h"
@@ -18,6 +20,13 @@ using test::runProgram;
 std::string textOf(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::vector<std::string> linesOf(const std::filesystem::path& file) {
+  std::istringstream text(textOf(file));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
 }
 
 /// A small city and one cell in it with a name that must be escaped.
@@ -55,9 +64,7 @@ TEST_F(BakeHtml, WritesPageCsvAndJsonThatAgree) {
     ++pictures;
   EXPECT_EQ(pictures, 2u);
 
-  std::istringstream csv(textOf(folder_ / "r.csv"));
-  std::string line, last;
-  while (std::getline(csv, line)) last = line;
+  const std::string last = linesOf(folder_ / "r.csv").back();
   const json& stages = cell["stages"];
   const std::string begin = fmt::format(R"("</script><b>""x"", y",{},)", cell["iterations"].dump());
   EXPECT_TRUE(last.starts_with(begin)) << last;
@@ -67,6 +74,38 @@ TEST_F(BakeHtml, WritesPageCsvAndJsonThatAgree) {
       sums += fmt::format(",{}", stages[stage][key].dump());
   }
   EXPECT_TRUE(last.ends_with(fmt::format("{},{}", sums, cell["pvs_size"].dump()))) << last << " and " << sums;
+}
+
+/// A bake that goes on has the totals of all cells, those of the earlier run in one line each.
+TEST_F(BakeHtml, CsvHoldsTheCellsOfAnEarlierRun) {
+  std::ofstream(folder_ / "cells.json") << R"({"cells":[{"name":"a","center":[0,30,0],"size":[4,2,4]},
+      {"name":"b","center":[0,40,0],"size":[4,2,4]},{"name":"c","center":[0,50,0],"size":[4,2,4]}]})";
+  ASSERT_EQ(runProgram(bake("--csv " + path("whole.csv"))).exit_code, 0);
+  const std::string whole = textOf(folder_ / "city.pvs");
+  std::filesystem::rename(folder_ / "city.pvs", folder_ / "city.pvs.part");
+  std::filesystem::resize_file(folder_ / "city.pvs.part", whole.size() - 100);  // within the last cell
+  const std::string going_on =
+      std::regex_replace(bake("--csv " + path("rest.csv")), std::regex("--overwrite"), "");
+  const ProgramRun run = runProgram(going_on);
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_NE(run.output.find("2 of 3 cells"), std::string::npos) << run.output;
+  // Cell by cell the last line, without the seconds; and how many lines.
+  const auto ends = [&](const std::string& file) {
+    std::map<std::string, std::pair<int, std::string>> by_cell;
+    for (const std::string& line : linesOf(folder_ / file)) {
+      auto& [lines, end] = by_cell[line.substr(0, line.find(','))];
+      ++lines;
+      end = std::regex_replace(line, std::regex("^([^,]*,[^,]*),[^,]*"), "$1");
+    }
+    return by_cell;
+  };
+  auto before = ends("whole.csv"), after = ends("rest.csv");
+  ASSERT_EQ(after.size(), 1u + 3);
+  for (const char* cell : {"a", "b", "c"}) EXPECT_EQ(after[cell].second, before[cell].second);
+  EXPECT_EQ(after["a"].first, 1);
+  EXPECT_EQ(after["b"].first, 1);
+  EXPECT_EQ(after["c"].first, before["c"].first);
+  EXPECT_GT(after["c"].first, 1);
 }
 
 TEST_F(BakeHtml, RefusesToReplaceItsInputsAndWhatCannotBeWritten) {

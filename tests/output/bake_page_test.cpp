@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "tests/output/example_pvs.h"
@@ -108,6 +109,16 @@ TEST(BakePage, NoNameBreaksIt) {
             "cell,iteration,seconds,random_rays,border_rays,reverse_rays,random_new,border_new,reverse_new,"
             "triangles");
   EXPECT_NE(csv.find("\na,2,1,2000,600,0,105,54,0,159\n"), std::string::npos) << csv;
+}
+
+/// A cell of an earlier run has no curve, but its end is known.
+TEST(CurvesCsv, HasALineForACellOfAnEarlierRun) {
+  BakeReport report = exampleReport();
+  report.cells[1].cell.name = std::string("b");
+  const std::string csv = curvesCsv(report, {{}, exampleCurve()});
+  const std::string lines = csv.substr(csv.find('\n') + 1);
+  EXPECT_TRUE(lines.starts_with("a,4,0.875,1000,2000,30,7,3,1,11\nb,1,0.25,1000,0,0,100,0,0,100\n")) << csv;
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 1 + 5);
 }
 
 }  // namespace
