@@ -7,6 +7,7 @@
 #include "core/cli/bake_options.h"
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
+#include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
 #include "core/cli/view_options.h"
@@ -204,6 +205,7 @@ void addCompareCommand(CLI::App& app) {
     if (command->count("--rays") + command->count("--seconds") == 0) {
       throw CLI::ValidationError("compare", "give a budget: --rays N or --seconds S");
     }
+    requireDistinct("--methods", options->methods);
     if (!options->methods.empty()) compare.methods.clear();
     for (const std::string& name : options->methods) compare.methods.push_back(*methodOf(name));
     // The budget ends a bake, so that all spend the same; only who asks for T gets it.

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
 #include "core/crosscheck/crosscheck.h"
@@ -173,6 +174,8 @@ void addCrosscheckCommand(CLI::App& app) {
       ->capture_default_str();
   declareLimits(*command, options->limits);
   command->callback([options] {
+    requireDistinct("--devices", options->devices);
+    requireDistinct("--kinds", options->kinds);
     for (const std::string& name : options->kinds) {
       const auto kind = rayKindOf(name);
       if (!kind) throw CLI::ValidationError("--kinds", "no kind of ray \"" + name + "\"; see --help");

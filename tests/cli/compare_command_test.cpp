@@ -69,6 +69,7 @@ TEST_F(CompareCommand, RefusesWhatMakesNoSense) {
   expectRefused("--rays 0", "--rays");
   expectRefused("--seconds nan", "--seconds");
   expectRefused("--rays 1000 --methods gvs++,best", "best");
+  expectRefused("--rays 1000 --methods gvs,random,gvs", "--methods: gvs is named twice");
   expectRefused("--rays 1000 --points 0", "--points");
   expectRefused("--rays 1000 --methods raster", "--device vulkan");
   expectRefused("--rays 1000 --report " + scene(), "read and replaced");

@@ -38,7 +38,7 @@ void expectRun(const std::string& arguments, int exit_code, std::initializer_lis
 
 TEST(CrosscheckCommand, ReportsAndKeepsToLimits) {
   const City city;
-  const std::string start = "crosscheck " + city.input() + " --devices cpu,cpu --rays 2000";
+  const std::string start = "crosscheck " + city.input() + " --devices cpu,opencl --rays 2000";
   expectRun(start + " --max-wrong 0 --max-missed 0 --max-differences 0 --report " + city / "r.json", 0,
             {"vertex", "far-tiny", "right"});
   const auto report = nlohmann::json::parse(std::ifstream(city / "r.json"));
@@ -64,6 +64,9 @@ TEST(CrosscheckCommand, SaysWhatIsWrong) {
   expectRun("crosscheck " + city.input() + " --devices cpu --rounding nan", 2, {"nan is not a number"});
   expectRun("crosscheck " + city.input() + " --devices cpu --max-missed -1", 2, {"-1 is not a number"});
   expectRun("crosscheck " + city.input(), 2, {"--devices"});
+  expectRun("crosscheck " + city.input() + " --devices cpu,opencl,cpu", 2, {"--devices: cpu is named twice"});
+  expectRun("crosscheck " + city.input() + " --devices cpu --kinds edge,edge", 2,
+            {"--kinds: edge is named twice"});
 }
 
 TEST(VerifyCommand, ProvesABakeAndWritesBetterWitnesses) {
