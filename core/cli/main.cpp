@@ -28,6 +28,18 @@ int failUsage(const CLI::App& app, const CLI::ParseError& error) {
   return fail(line + " (see: sightline" + command + " --help)", kExitUsage);
 }
 
+/// '' mostly comes from a variable of the shell that is not set, and would count as not given.
+void refuseEmptyValues(CLI::App& app) {
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+    for (CLI::Option* option : command->get_options()) {
+      const char* line = option->get_required() ? "is empty; give a value"
+                                                : "is empty; give a value, or leave the option out";
+      option->check(
+          CLI::Validator([line](std::string& text) { return text.empty() ? line : std::string(); }, ""));
+    }
+  }
+}
+
 int runCommand(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -72,5 +84,6 @@ int main(int argc, char** argv) {
 #define SL_COMMAND(function) function(app);
 #include "generated/commands.inc"
 #undef SL_COMMAND
+  refuseEmptyValues(app);
   return flushOutput(runCommand(app, argc, argv));
 }
