@@ -167,7 +167,8 @@ void addCrosscheckCommand(CLI::App& app) {
       ->type_name("R.json");
   command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
   command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");
-  command->add_flag("--pvs", options->pvs, "also bake on each device, and explain how the sets differ");
+  command->add_flag("--pvs", options->pvs,
+                    "also bake on each device (two or more), and explain how the sets differ");
   command->add_option("--n-rand", options->n_rand, "random rays an iteration of these bakes")
       ->check(CLI::Range(1u, 4294967293u).description(""))
       ->type_name("N")
@@ -176,6 +177,9 @@ void addCrosscheckCommand(CLI::App& app) {
   command->callback([options] {
     requireDistinct("--devices", options->devices);
     requireDistinct("--kinds", options->kinds);
+    if (options->pvs && options->devices.size() < 2) {
+      throw CLI::ValidationError("--pvs", "compares the sets of two devices; name another in --devices");
+    }
     for (const std::string& name : options->kinds) {
       const auto kind = rayKindOf(name);
       if (!kind) throw CLI::ValidationError("--kinds", "no kind of ray \"" + name + "\"; see --help");
