@@ -106,6 +106,14 @@ void addCellCharts(HtmlReport& html, const ComparisonReport& report) {
   html.charts(charts);
 }
 
+/// Parameters that all methods share: of a method, and of the rays after a bake, there is none.
+std::vector<ReportFact> sharedParameters(const BakeParams& params) {
+  std::vector<ReportFact> facts = parameterFacts(params);
+  std::erase_if(facts,
+                [](const ReportFact& f) { return f.first == "method" || f.first == "validation rays"; });
+  return facts;
+}
+
 std::string budgetText(const BakeParams& params) {
   std::string text;
   if (params.max_rays > 0) text = shortCount(params.max_rays) + " rays";
@@ -137,7 +145,7 @@ HtmlReport comparisonPage(const ComparisonReport& report) {
   addErrorCharts(html, points);
   addCellCharts(html, report);
   html.section("Parameters");
-  html.facts(parameterFacts(options.params));
+  html.facts(sharedParameters(options.params));
   html.repeat({.command = report.command,
                .seed = std::to_string(options.seed),
                .device = report.device.id + ", " + report.device.name,

@@ -38,6 +38,14 @@ Json runJson(const MethodRun& run) {
   return json;
 }
 
+/// Those that all methods share: of a method, and of the rays after a bake, there is none.
+Json sharedParameters(const BakeParams& params) {
+  Json json = toJson(params);
+  json.erase("method");
+  json.erase("validation_rays");
+  return json;
+}
+
 Json summaryJson(const MethodSummary& s) {
   return {{"method", methodName(s.method)},
           {"average_wrong", toJson(s.average_wrong)},
@@ -98,7 +106,7 @@ std::string comparisonJson(const ComparisonReport& report) {
                      {"device", toJson(std::optional(report.device))},
                      {"scene", toJson(report.scene)},
                      {"spatial_splits", report.spatial_splits},
-                     {"parameters", toJson(options.params)},
+                     {"parameters", sharedParameters(options.params)},
                      {"seed", options.seed},
                      {"repeats", options.repeats},
                      {"missing_rays", options.missing_rays},

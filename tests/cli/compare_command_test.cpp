@@ -50,6 +50,11 @@ TEST_F(CompareCommand, WritesTableJsonCsvAndPage) {
   const auto report = nlohmann::json::parse(read(json));
   EXPECT_EQ(report["points"].size(), 2u);
   EXPECT_EQ(report["points"][1]["methods"].size(), 4u);
+  EXPECT_EQ(report["parameters"]["n_rand"], 5000);
+  EXPECT_EQ(report["parameters"]["max_rays"], 30000);
+  for (const char* key : {"method", "validation_rays"}) {
+    EXPECT_FALSE(report["parameters"].contains(key)) << key << ": there is not one of it";
+  }
   const auto& runs = report["cells"][0]["runs"];
   ASSERT_EQ(runs.size(), 8u);
   // The naive implementation finds the very set of gvs++.
@@ -61,7 +66,11 @@ TEST_F(CompareCommand, WritesTableJsonCsvAndPage) {
   const std::string lines = read(csv);
   const auto cell_count = report["cells"].size();
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), int(1 + cell_count * 8 * 2));
-  EXPECT_NE(read(html).find("Average error over rays"), std::string::npos);
+  const std::string page = read(html);
+  EXPECT_NE(page.find("Average error over rays"), std::string::npos);
+  EXPECT_NE(page.find("<dt>random rays an iteration</dt>"), std::string::npos);
+  EXPECT_EQ(page.find("<dt>method</dt>"), std::string::npos);
+  EXPECT_EQ(page.find("<dt>validation rays</dt>"), std::string::npos);
 }
 
 TEST_F(CompareCommand, RefusesWhatMakesNoSense) {
