@@ -17,13 +17,11 @@
 #include "core/error.h"
 #include "core/gvs/bake_cell.h"
 #include "core/measure/measure_page.h"
+#include "core/measure/worst_pictures.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
-#include "core/report/cell_pictures.h"
-#include "core/report/shading.h"
 #include "core/report/status_line.h"
 #include "core/report/text.h"
-#include "core/report/view_picture.h"
 #include "core/scene/file_io.h"
 
 namespace sightline {
@@ -103,22 +101,15 @@ std::string statusText(const std::string& cell, size_t index, size_t cells, cons
                      shortDuration(left), shortDuration(left + mean * double(cells - index - 1)));
 }
 
-/// Draws a cell's worst views of one set. Returns the files' names.
-std::vector<std::string> drawWorst(const MeasureCommand& command, const Scene& scene, Device& device,
-                                   const MeasureOptions& options, const CellPvs& pvs, uint32_t cell,
-                                   size_t set, std::span<const uint32_t> views) {
-  const std::vector<uint8_t> member = membership(scene, pvs.triangles);
-  const auto frames = measureViews(pvs.cell, cell, options.views, options.seed, options.fov);
-  std::vector<uint32_t> triangles(size_t(options.resolution) * options.resolution);
-  std::vector<std::string> names;
-  for (const uint32_t view : views) {
-    const std::string of_set = command.pvs.size() == 1 ? "" : fmt::format("-{}", set);
-    names.push_back(fmt::format("{}{}-view-{}.png", pictureName(pvs.cell.name, cell), of_set, view));
-    device.traceViews(std::span(frames).subspan(view, 1), options.resolution, triangles);
-    savePng(viewPicture(scene, frames[view], options.resolution, triangles, member),
-            command.pictures / names.back());
+/// What an earlier run drew of these cells would be taken for pictures of this one.
+void removeOldPictures(const MeasureCommand& command, const PvsFile& pvs, std::span<const uint32_t> cells) {
+  size_t removed = 0;
+  for (const uint32_t cell : cells) {
+    removed += removeWorstPictures(command.pictures, pvs.cells[cell].cell.name, cell);
   }
-  return names;
+  if (removed > 0) {
+    fmt::print("{}: {} pictures of an earlier run removed\n", command.pictures.string(), removed);
+  }
 }
 
 /// One cell of all files.
@@ -137,8 +128,8 @@ void measureOne(const MeasureCommand& command, const Scene& scene, Device& devic
     MeasuredCell measured{
         view_cell.name, pvs.triangles.size(), errors[s].by_prefix.front(), errors[s].worst_views, {}};
     if (!command.pictures.empty()) {
-      measured.pictures =
-          drawWorst(command, scene, device, report.options, pvs, cell, s, measured.worst_views);
+      const WorstPictures pictures{command.pictures, files.size() == 1, report.options};
+      measured.pictures = pictures.draw(scene, device, pvs, cell, s, measured.worst_views);
     }
     report.sets[s].cells.push_back(std::move(measured));
   }
@@ -208,6 +199,7 @@ void run(const MeasureCommand& command) {
   fmt::print("{}: {} triangles; {}, {}\n", command.scene.string(), scene.triangles.size(), report.device.id,
              report.device.name);
   chooseSize(command, report);
+  if (!command.pictures.empty()) removeOldPictures(command, files.front(), cells);
   StopSignal stop;
   measureAll(command, scene, *device, files, cells, stop, report);
   std::fputs(measureTable(report).c_str(), stdout);
@@ -239,7 +231,8 @@ void declareFiles(CLI::App& command, MeasureCommand& options) {
       ->capture_default_str();
   command
       .add_option("--pictures", options.pictures,
-                  "draw the worst views, at most three a cell and file: scene grey, wrong pixels red")
+                  "draw the worst views, at most three a cell and file: scene grey, wrong pixels red; an "
+                  "earlier run's pictures of these cells are removed")
       ->type_name("DIR");
   command.add_option("--report", options.report, "write what was found as JSON (docs/report.md)")
       ->type_name("R.json");

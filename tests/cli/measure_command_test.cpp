@@ -3,6 +3,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/pvs/pvs.h"
 #include "tests/cli/run_program.h"
@@ -106,6 +107,50 @@ TEST_F(MeasureCommandTest, MeasuresSeveralSetsAtOnce) {
   auto expected = poor["cells"][1];
   expected["pictures"] = nlohmann::json::array();
   EXPECT_EQ(one["sets"][0]["cells"][0], expected);
+}
+
+/// The folder holds the pictures of the last measurement of each cell, and what else lay in it.
+TEST_F(MeasureCommandTest, RemovesItsOwnOldPictures) {
+  const auto names = [] {
+    std::set<std::string> all;
+    for (const auto& entry : std::filesystem::directory_iterator(path("worst"))) {
+      all.insert(entry.path().filename().string());
+    }
+    return all;
+  };
+  const auto drawn = [](const std::string& report) {
+    std::set<std::string> all;
+    const auto json = nlohmann::json::parse(std::ifstream(path(report)));
+    for (const auto& set : json["sets"]) {
+      for (const auto& cell : set["cells"]) all.insert(cell["pictures"].begin(), cell["pictures"].end());
+    }
+    return all;
+  };
+  const auto with = [](std::set<std::string> a, const std::set<std::string>& b) {
+    a.insert(b.begin(), b.end());
+    return a;
+  };
+  std::filesystem::create_directory(path("worst"));
+  const std::set<std::string> mine = {"000-path-1-outside.png", "000-path-1-view-1.png.txt", "view-1.png",
+                                      "000-path-10-view-1.png", "000-path-1-view-x.png"};
+  for (const std::string& name : mine) std::ofstream(path("worst") + "/" + name) << name;
+  const std::string command = "measure " + path("city.glb") + " " + path("poor.pvs") +
+                              " --device cpu --resolution 30 --pictures " + path("worst") + " --report ";
+  expectRun(command + path("1.json") + " --views 20", 0, {});
+  EXPECT_EQ(names(), with(mine, drawn("1.json")));
+
+  // Other views, two files instead of one, one of the cells: the other keeps its pictures.
+  expectRun(command + path("2.json") + " " + path("poor.pvs") + " --views 21 --seed 2 --cell 0", 0,
+            {"worst: 3 pictures of an earlier run removed"});
+  std::set<std::string> expected = with(mine, drawn("2.json"));
+  EXPECT_EQ(drawn("2.json").size(), 6u);
+  for (const std::string& name : drawn("1.json")) {
+    if (name.starts_with("001-")) expected.insert(name);
+  }
+  EXPECT_EQ(names(), expected);
+
+  expectRun(command + path("3.json") + " --views 22", 0, {"worst: 9 pictures of an earlier run removed"});
+  EXPECT_EQ(names(), with(mine, drawn("3.json")));
 }
 
 TEST_F(MeasureCommandTest, ExitsWith3PastALimit) {
