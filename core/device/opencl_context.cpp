@@ -138,7 +138,7 @@ size_t OpenClContext::maxWorkGroup(const ClKernel& kernel) const {
 
 ClBuffer OpenClContext::buffer(uint64_t bytes, const char* what) {
   bytes = std::max<uint64_t>(bytes, 16);
-  const std::string advice =
+  const char* advice =
       "; use the device cpu, a smaller scene or, with PoCL, a higher POCL_MEMORY_LIMIT (GiB)";
   if (bytes > max_allocation_) {
     throw Error(
@@ -153,6 +153,8 @@ ClBuffer OpenClContext::buffer(uint64_t bytes, const char* what) {
         clCreateBuffer(context_.get(), CL_MEM_READ_WRITE, bytes, nullptr, &code));
   }
   if (code == CL_MEM_OBJECT_ALLOCATION_FAILURE || code == CL_OUT_OF_RESOURCES) {
+    const bool by_budget = *allocated_ + bytes > memory_limit_ && memory_limit_ < info_.memory_bytes;
+    if (by_budget) advice = "; give a larger --memory-budget, or leave it out";
     throw Error(fmt::format(
         "{} ({}): the {} take {:.1f} MiB, but {:.1f} of the {:.1f} MiB that it may use are in use{}",
         info_.id, info_.name, what, mebibytes(bytes), mebibytes(*allocated_), mebibytes(memory_limit_),

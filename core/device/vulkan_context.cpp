@@ -10,7 +10,12 @@
 namespace sightline {
 namespace {
 
-constexpr const char* kAdvice = "; use the device cpu or opencl, or a smaller scene";
+/// What to do where memory ends. by_budget: at what the user allowed, not at what there is.
+std::string advice(const VulkanMemoryUse& use, bool by_budget) {
+  std::string text = by_budget ? "; give a larger --memory-budget" : "; ";
+  if (use.remedy != nullptr) return text + (by_budget ? " or " : "give ") + use.remedy;
+  return text + (by_budget ? ", or leave it out" : "use the device cpu or opencl, or a smaller scene");
+}
 
 double mebibytes(uint64_t bytes) {
   return double(bytes) / 1048576.0;
@@ -188,16 +193,17 @@ uint32_t VulkanContext::memoryType(uint32_t allowed, VulkanMemory memory) const 
   return *second;
 }
 
-void VulkanContext::requireOneAllocation(uint64_t bytes, const char* what) const {
+void VulkanContext::requireOneAllocation(uint64_t bytes, const VulkanMemoryUse& use) const {
   if (bytes <= limits_.allocation_bytes) return;
   throw Error(fmt::format(
       "{} ({}): the {} take {:.0f} MiB, more than the {:.0f} MiB that the driver allows one buffer{}",
-      info().id, info().name, what, mebibytes(bytes), mebibytes(limits_.allocation_bytes), kAdvice));
+      info().id, info().name, use.what, mebibytes(bytes), mebibytes(limits_.allocation_bytes),
+      advice(use, false)));
 }
 
 VulkanMemoryBlock VulkanContext::allocate(uint64_t bytes, const VkMemoryRequirements& requirements,
-                                          VulkanMemory memory, const char* what) const {
-  requireOneAllocation(bytes, what);
+                                          VulkanMemory memory, const VulkanMemoryUse& use) const {
+  requireOneAllocation(bytes, use);
   auto flags = vkStruct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
   flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
   auto allocate = vkStruct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
@@ -209,10 +215,11 @@ VulkanMemoryBlock VulkanContext::allocate(uint64_t bytes, const VkMemoryRequirem
   const VkResult code = fits(bytes) ? api_.vkAllocateMemory(device_, &allocate, nullptr, &block)
                                     : VK_ERROR_OUT_OF_DEVICE_MEMORY;
   if (code == VK_ERROR_OUT_OF_DEVICE_MEMORY || code == VK_ERROR_OUT_OF_HOST_MEMORY) {
+    const bool by_budget = *allocated_ + bytes > memory_limit_ && memory_limit_ < info().memory_bytes;
     throw Error(fmt::format(
         "{} ({}): the {} take {:.1f} MiB, but {:.1f} of the {:.1f} MiB that it may use are in use{}",
-        info().id, info().name, what, mebibytes(bytes), mebibytes(*allocated_), mebibytes(memory_limit_),
-        kAdvice));
+        info().id, info().name, use.what, mebibytes(bytes), mebibytes(*allocated_), mebibytes(memory_limit_),
+        advice(use, by_budget)));
   }
   checkVk(code, "vkAllocateMemory");
   VulkanMemoryBlock result;
@@ -225,9 +232,9 @@ VulkanMemoryBlock VulkanContext::allocate(uint64_t bytes, const VkMemoryRequirem
   return result;
 }
 
-VulkanBuffer VulkanContext::buffer(uint64_t bytes, const char* what, VulkanMemory memory) const {
+VulkanBuffer VulkanContext::buffer(uint64_t bytes, const VulkanMemoryUse& use, VulkanMemory memory) const {
   bytes = (std::max<uint64_t>(bytes, 16) + 3) / 4 * 4;
-  requireOneAllocation(bytes, what);
+  requireOneAllocation(bytes, use);
   auto info = vkStruct<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
   info.size = bytes;
   info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
@@ -251,7 +258,7 @@ VulkanBuffer VulkanContext::buffer(uint64_t bytes, const char* what, VulkanMemor
                     }};
   VkMemoryRequirements requirements{};
   api_.vkGetBufferMemoryRequirements(device_, handle, &requirements);
-  result.memory_ = allocate(bytes, requirements, memory, what);
+  result.memory_ = allocate(bytes, requirements, memory, use);
   checkVk(api_.vkBindBufferMemory(device_, handle, result.memory_.get(), 0), "vkBindBufferMemory");
   if (memory == VulkanMemory::kDevice) {
     auto of = vkStruct<VkBufferDeviceAddressInfo>(VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO);

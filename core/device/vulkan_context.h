@@ -45,6 +45,15 @@ enum class VulkanMemory {
   kReadback,  ///< host-visible and cached, read by the host
 };
 
+/// What memory is for ("triangles of the scene"), and what to do if there is too little of it, if that is
+/// something special ("a smaller --raster-resolution").
+struct VulkanMemoryUse {
+  const char* what;
+  const char* remedy = nullptr;
+  VulkanMemoryUse(const char* its_what, const char* its_remedy = nullptr)
+      : what(its_what), remedy(its_remedy) {}
+};
+
 /// Device memory that counts as allocated as long as it lives; empty by default.
 class VulkanMemoryBlock {
  public:
@@ -125,15 +134,16 @@ class VulkanContext {
   VkQueue transferQueue() const { return transfer_queue_; }
   uint32_t transferFamily() const { return families_.back(); }
 
-  /// For a buffer or an image of `bytes` bytes. what: as of buffer().
+  /// For a buffer or an image of `bytes` bytes. use: as of buffer().
   VulkanMemoryBlock allocate(uint64_t bytes, const VkMemoryRequirements& requirements, VulkanMemory memory,
-                             const char* what) const;
-  /// what: for the message when it does not fit ("triangles of the scene"). 0 bytes: a small dummy.
-  VulkanBuffer buffer(uint64_t bytes, const char* what, VulkanMemory memory = VulkanMemory::kDevice) const;
+                             const VulkanMemoryUse& use) const;
+  /// use: for the message when it does not fit. 0 bytes: a small dummy.
+  VulkanBuffer buffer(uint64_t bytes, const VulkanMemoryUse& use,
+                      VulkanMemory memory = VulkanMemory::kDevice) const;
 
  private:
   void createDevice();
-  void requireOneAllocation(uint64_t bytes, const char* what) const;
+  void requireOneAllocation(uint64_t bytes, const VulkanMemoryUse& use) const;
   void readLimits();
   uint32_t memoryType(uint32_t allowed, VulkanMemory memory) const;
 

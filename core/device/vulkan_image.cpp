@@ -3,7 +3,8 @@
 namespace sightline {
 
 VulkanImage::VulkanImage(const VulkanContext& context, VkFormat format, VkImageUsageFlags usage,
-                         VkImageAspectFlags aspect, uint32_t resolution, uint32_t layers, const char* what) {
+                         VkImageAspectFlags aspect, uint32_t resolution, uint32_t layers,
+                         const VulkanMemoryUse& use) {
   const VulkanApi& api = context.api();
   auto info = vkStruct<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
   info.imageType = VK_IMAGE_TYPE_2D;
@@ -21,7 +22,7 @@ VulkanImage::VulkanImage(const VulkanContext& context, VkFormat format, VkImageU
             }};
   VkMemoryRequirements requirements{};
   api.vkGetImageMemoryRequirements(context.device(), image, &requirements);
-  memory_ = context.allocate(requirements.size, requirements, VulkanMemory::kDevice, what);
+  memory_ = context.allocate(requirements.size, requirements, VulkanMemory::kDevice, use);
   checkVk(api.vkBindImageMemory(context.device(), image, memory_.get(), 0), "vkBindImageMemory");
 
   auto view_info = vkStruct<VkImageViewCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO);

@@ -9,7 +9,7 @@ class VulkanImage {
   VulkanImage() = default;
   /// what: for the message when it does not fit. Throws Error.
   VulkanImage(const VulkanContext& context, VkFormat format, VkImageUsageFlags usage,
-              VkImageAspectFlags aspect, uint32_t resolution, uint32_t layers, const char* what);
+              VkImageAspectFlags aspect, uint32_t resolution, uint32_t layers, const VulkanMemoryUse& use);
 
   VkImage get() const { return image_.get(); }
   VkImageView view() const { return view_.get(); }

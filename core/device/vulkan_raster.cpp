@@ -62,8 +62,10 @@ VulkanRaster::VulkanRaster(const VulkanContext& context, VulkanRunner& runner, u
     throw Error(fmt::format("{} ({}) cannot rasterise: {}", info.id, info.name, context.whyNoRaster()));
   }
   if (resolution > context.limits().image_side) {
-    throw Error(fmt::format("{} ({}) draws images of {} pixels a side at most, not of {}", info.id, info.name,
-                            context.limits().image_side, resolution));
+    throw Error(
+        fmt::format("{} ({}) draws images of {} pixels a side at most; give a smaller "
+                    "--raster-resolution than {}",
+                    info.id, info.name, context.limits().image_side, resolution));
   }
   createImages();
   createPass();
@@ -75,12 +77,15 @@ VulkanRaster::VulkanRaster(const VulkanContext& context, VulkanRunner& runner, u
 }
 
 void VulkanRaster::createImages() {
-  leaves_ = context_.buffer(uint64_t(kHemicubeViews) * resolution_ * resolution_ * 4, "pixels of a hemicube");
+  const char* remedy = "a smaller --raster-resolution";
+  leaves_ = context_.buffer(uint64_t(kHemicubeViews) * resolution_ * resolution_ * 4,
+                            {"pixels of a hemicube", remedy});
   ids_ =
       VulkanImage(context_, kIdFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                  VK_IMAGE_ASPECT_COLOR_BIT, resolution_, kHemicubeViews, "images of a hemicube");
-  depth_ = VulkanImage(context_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
-                       VK_IMAGE_ASPECT_DEPTH_BIT, resolution_, kHemicubeViews, "depth of a hemicube");
+                  VK_IMAGE_ASPECT_COLOR_BIT, resolution_, kHemicubeViews, {"images of a hemicube", remedy});
+  depth_ =
+      VulkanImage(context_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                  VK_IMAGE_ASPECT_DEPTH_BIT, resolution_, kHemicubeViews, {"depth of a hemicube", remedy});
 }
 
 void VulkanRaster::boundChunks(uint32_t triangles) {

@@ -319,15 +319,21 @@ TEST_F(Raster, WhatDoesNotFitIsOneLine) {
   const Scene scene = boxes.finish();
   DeviceOptions options;
   options.memory_budget_bytes = 64u << 20;
-  BakeParams p = params(16384);
-  p.n_rand = 1000;
-  try {
-    bakeOn("vulkan", scene, {"cell", {0, 0, 0}, {1, 1, 1}}, p, options);
-    FAIL() << "nothing was thrown";
-  } catch (const Error& error) {
-    const std::string line = error.what();
-    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
-    EXPECT_NE(line.find("pixels of a hemicube"), std::string::npos) << line;
+  for (const uint32_t resolution : {2048u, 16384u}) {  // past the budget, and past a buffer's size as well
+    BakeParams p = params(resolution);
+    p.n_rand = 1000;
+    try {
+      bakeOn("vulkan", scene, {"cell", {0, 0, 0}, {1, 1, 1}}, p, options);
+      FAIL() << "nothing was thrown";
+    } catch (const Error& error) {
+      const std::string line = error.what();
+      EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+      EXPECT_NE(line.find("pixels of a hemicube"), std::string::npos) << line;
+      EXPECT_NE(line.find("a smaller --raster-resolution"), std::string::npos) << line;
+      EXPECT_EQ(line.find("opencl"), std::string::npos) << "no device that draws: " << line;
+      const bool by_budget = line.find("give a larger --memory-budget or a smaller") != std::string::npos;
+      EXPECT_TRUE(by_budget || resolution == 16384) << line;
+    }
   }
 }
 

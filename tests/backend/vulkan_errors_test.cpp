@@ -78,6 +78,14 @@ TEST(VulkanErrors, WhatDoesNotFitIsNamed) {
   EXPECT_EQ(context.allocatedBytes(), 0u);
 }
 
+TEST(VulkanErrors, WhatTheBudgetForbidsNamesTheBudget) {
+  SL_SKIP_WITHOUT_VULKAN();
+  const VulkanContext context("vulkan", false, 1u << 20);
+  const std::string line = lineOf([&] { context.buffer(2u << 20, "hits"); });
+  expectLine(line, {"hits", "of the 1.0 MiB", "give a larger --memory-budget, or leave it out"});
+  EXPECT_EQ(line.find("device cpu"), std::string::npos) << line;
+}
+
 /// Under validation, as CTest runs the tests, a mistake ends the process; so does a missing barrier.
 TEST(VulkanErrorsDeathTest, ValidationIsOn) {
   SL_SKIP_WITHOUT_VULKAN();

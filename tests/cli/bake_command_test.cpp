@@ -234,6 +234,7 @@ TEST(BakeCommand, StaysWithinItsMemoryBudgetOrSaysWhatItNeeds) {
   for (const char* device : {"cpu", "opencl"}) {
     const ProgramRun run = runProgram(place.bake("x.pvs", "--memory-budget 1000", device));
     EXPECT_EQ(run.exit_code, 1) << run.output;
+    EXPECT_TRUE(contains(run, "--memory-budget")) << run.output;
     EXPECT_FALSE(std::filesystem::exists(place / "x.pvs")) << device;
   }
 }
