@@ -7,13 +7,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
-#include "core/error.h"
+#include "core/cli/number_checks.h"
 #include "core/gvs/bake_cell.h"
 #include "core/scene/scene.h"
+#include "tests/bench/bench_main.h"
 #include "tests/bench/timed_device.h"
 
 namespace sightline {
@@ -84,36 +84,20 @@ void bench(const Options& options) {
   }
 }
 
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i];
-    const auto value = [&] { return i + 1 < argc ? argv[++i] : throw Error(name + ": wants a value"); };
-    if (name == "--device")
-      options.device = value();
-    else if (name == "--runs")
-      options.runs = std::max(1, std::atoi(value()));
-    else if (name == "--batch-rays")
-      options.batch_rays = uint32_t(std::strtoul(value(), nullptr, 10));
-    else if (name == "--spatial-splits")
-      options.spatial_splits = true;
-    else if (options.scene.empty())
-      options.scene = name;
-    else
-      options.cells = name;
-  }
-  if (options.cells.empty()) throw Error("wanted: bench_bake SCENE CELLS.json");
-  return options;
-}
-
 }  // namespace
 }  // namespace sightline
 
 int main(int argc, char** argv) {
-  try {
-    sightline::bench(sightline::parse(argc, argv));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "bench_bake: {}\n", error.what());
-    return 1;
-  }
+  using sightline::between;
+  sightline::Options options;
+  CLI::App app("Where the time of a bake goes", "bench_bake");
+  app.add_option("SCENE", options.scene)->required();
+  app.add_option("CELLS", options.cells, "view cells, JSON")->required();
+  app.add_option("--device", options.device)->capture_default_str();
+  app.add_option("--runs", options.runs, "of each cell")->check(between(1, 1e6))->capture_default_str();
+  app.add_option("--batch-rays", options.batch_rays, "as of sightline bake")
+      ->check(between(4096, 1u << 28))
+      ->capture_default_str();
+  app.add_flag("--spatial-splits", options.spatial_splits);
+  return sightline::benchMain(app, argc, argv, [&] { sightline::bench(options); });
 }

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
@@ -21,8 +20,9 @@
 #include <vector>
 
 #include "bvh/bvh.h"
-#include "core/error.h"
+#include "core/cli/number_checks.h"
 #include "core/scene/generate.h"
+#include "tests/bench/bench_main.h"
 #ifdef SL_HAVE_EMBREE
 #include <embree3/rtcore.h>
 #endif
@@ -168,36 +168,21 @@ void run(const Options& options) {
 }  // namespace sightline
 
 int main(int argc, char** argv) {
+  using sightline::between;
   sightline::Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string key = argv[i];
-    const auto value = [&] { return i + 1 < argc ? argv[++i] : ""; };
-    if (key == "--triangles") {
-      options.triangles = static_cast<uint32_t>(std::max(1ul, std::strtoul(value(), nullptr, 10)));
-    } else if (key == "--runs") {
-      options.runs = std::atoi(value());
-    } else if (key == "--threads") {
-      options.threads = std::atoi(value());
-    } else if (key == "--scene") {
-      options.scene = value();
-    } else if (key == "--plain") {
-      options.spatial = false;
-    } else if (key == "--processor-time") {
-      options.processor_time = true;
-    } else if (key == "--spatial") {
-      options.plain = false;
-    } else {
-      fmt::print(stderr,
-                 "usage: bench_build [--triangles N] [--runs N] [--threads N] [--scene "
-                 "city|canyon|plant|bistro|soup] [--plain|--spatial] [--processor-time]\n");
-      return 2;
-    }
-  }
-  try {
-    sightline::run(options);
-  } catch (const sightline::Error& error) {
-    fmt::print(stderr, "{}\n", error.what());
-    return error.exitCode();
-  }
-  return 0;
+  CLI::App app("How long the tree takes to build, next to Embree's", "bench_build");
+  app.add_option("--triangles", options.triangles)->check(between(1, 20e6))->capture_default_str();
+  app.add_option("--runs", options.runs)->check(between(1, 1e6))->capture_default_str();
+  app.add_option("--threads", options.threads, "0: all cores")
+      ->check(between(0, 4096))
+      ->capture_default_str();
+  app.add_option("--scene", options.scene)
+      ->check(CLI::IsMember({"city", "canyon", "plant", "bistro", "soup"}))
+      ->capture_default_str();
+  app.add_flag_callback(
+      "--plain", [&] { options.spatial = false; }, "not the tree with spatial splits");
+  app.add_flag_callback(
+      "--spatial", [&] { options.plain = false; }, "only the tree with spatial splits");
+  app.add_flag("--processor-time", options.processor_time, "of all threads, instead of the time that passed");
+  return sightline::benchMain(app, argc, argv, [&] { sightline::run(options); });
 }

@@ -7,14 +7,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "core/cli/number_checks.h"
 #include "core/device/vulkan_commands.h"
-#include "core/error.h"
+#include "tests/bench/bench_main.h"
 
 namespace sightline {
 namespace {
@@ -119,15 +119,8 @@ void bench(const std::string& device, int runs) {
 int main(int argc, char** argv) {
   std::string device = "vulkan";
   int runs = 9;
-  for (int i = 1; i + 1 < argc; i += 2) {
-    const std::string name = argv[i];
-    if (name == "--device") device = argv[i + 1];
-    if (name == "--runs") runs = std::max(1, std::atoi(argv[i + 1]));
-  }
-  try {
-    sightline::bench(device, runs);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "bench_vulkan: {}\n", error.what());
-    return 1;
-  }
+  CLI::App app("What copies, memory types and waiting cost on a Vulkan device", "bench_vulkan");
+  app.add_option("--device", device)->capture_default_str();
+  app.add_option("--runs", runs)->check(sightline::between(1, 1e6))->capture_default_str();
+  return sightline::benchMain(app, argc, argv, [&] { sightline::bench(device, runs); });
 }

@@ -11,16 +11,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <string>
 #include <vector>
 
-#include "core/error.h"
+#include "core/cli/number_checks.h"
 #include "core/gvs/bake_cell.h"
 #include "core/gvs/face_rays.h"
 #include "core/gvs/stage_rays.h"
 #include "core/gvs/thesis_params.h"
 #include "core/scene/scene.h"
+#include "tests/bench/bench_main.h"
 
 namespace sightline {
 namespace {
@@ -183,37 +183,21 @@ void bench(const Options& options) {
   }
 }
 
-Options parse(int argc, char** argv) {
-  Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string name = argv[i];
-    const auto value = [&] { return i + 1 < argc ? argv[++i] : throw Error(name + ": wants a value"); };
-    if (name == "--device") {
-      options.device = value();
-    } else if (name == "--cell") {
-      options.cell = value();
-    } else if (name == "--n-rand") {
-      options.params.n_rand = uint32_t(std::strtoul(value(), nullptr, 10));
-    } else if (name == "--thesis") {
-      setThesisParams(options.params);
-    } else if (options.scene.empty()) {
-      options.scene = name;
-    } else {
-      options.cells = name;
-    }
-  }
-  if (options.cells.empty()) throw Error("wanted: bench_waste SCENE CELLS.json");
-  return options;
-}
-
 }  // namespace
 }  // namespace sightline
 
 int main(int argc, char** argv) {
-  try {
-    sightline::bench(sightline::parse(argc, argv));
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "bench_waste: {}\n", error.what());
-    return 1;
-  }
+  sightline::Options options;
+  CLI::App app("Where gvs++ spends its rays, and where it finds triangles", "bench_waste");
+  app.add_option("SCENE", options.scene)->required();
+  app.add_option("CELLS", options.cells, "view cells, JSON")->required();
+  app.add_option("--device", options.device)->capture_default_str();
+  app.add_option("--cell", options.cell, "only the cell of this name");
+  // Before the options that win over it: CLI11 takes them in the order of declaration.
+  app.add_flag_callback(
+      "--thesis", [&] { sightline::setThesisParams(options.params); }, "as of sightline bake");
+  app.add_option("--n-rand", options.params.n_rand, "random rays an iteration")
+      ->check(sightline::between(1, 4294967293.0))
+      ->capture_default_str();
+  return sightline::benchMain(app, argc, argv, [&] { sightline::bench(options); });
 }
