@@ -18,9 +18,11 @@ __kernel void countBits(__global const uint* words, uint word_count, uint block_
 }
 
 /// Exclusive sums of the block counts in place, by one work group; the total goes to
-/// block_counts[block_count].
+/// block_counts[block_count] and, unless place is 0, to a word of the counters.
 __kernel __attribute__((reqd_work_group_size(SL_SUM_ITEMS, 1, 1))) void sumBlocks(__global uint* block_counts,
-                                                                                  uint block_count) {
+                                                                                  uint block_count,
+                                                                                  __global uint* counters,
+                                                                                  uint place) {
   __local uint partial[SL_SUM_ITEMS];
   const uint item = (uint)get_local_id(0), items = SL_SUM_ITEMS;
   const uint share = (block_count + items - 1) / items;
@@ -36,7 +38,9 @@ __kernel __attribute__((reqd_work_group_size(SL_SUM_ITEMS, 1, 1))) void sumBlock
     block_counts[i] = running;
     running += count;
   }
-  if (item == items - 1) block_counts[block_count] = running;
+  if (item != items - 1) return;
+  block_counts[block_count] = running;
+  if (place != 0) counters[place] = running;
 }
 
 /// Writes the indices of the set bits and clears them.
@@ -67,13 +71,10 @@ static inline Ray segmentRayAt(__global const RandomSegment* segments, uint segm
 
 /// Appends the new triangles of a batch, whose ids are in `triangles`, to the list from entry `end` on, each
 /// with the ray that won it, and marks their slots as old.
-__kernel void appendEntries(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global const Face* faces,
-                            StageParams params, __global PvsEntry* entries, uint end,
-                            __global const uint* triangles, uint count, uint stage,
-                            __global const RandomSegment* segments, uint segment_count, uint first_entry,
-                            __global const uint* border_hits, __global const uint* discontinuities,
-                            uint first_item, ulong items_before) {
-  const SceneRef scene = SL_SCENE_PACK;
+__kernel void appendEntries(SL_SET_ARGS, __global const Face* faces, StageParams params,
+                            __global PvsEntry* list, uint end, __global const uint* triangles, uint count,
+                            uint stage, __global const RandomSegment* segments, uint segment_count,
+                            SL_BORDER_ARGS, __global const ReverseItem* items) {
   const SetRef set = SL_SET_PACK;
   const uint i = (uint)get_global_id(0);
   if (i >= count) return;
@@ -82,20 +83,19 @@ __kernel void appendEntries(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global
   const uint index = winner[slot];
   winner[slot] = kSlotOld;
   Ray ray;
-  const ReverseSource source = {
-      {record_of, entries, first_entry}, border_hits, discontinuities, first_item, items_before};
   if (stage == kStageRandom) {
     ray = segmentRayAt(segments, segment_count, faces, params, index);
   } else if (stage == kStageBorder) {
-    ray = borderRayAt(scene, source.border, params, index - 1);
+    const BorderBatch batch = SL_BORDER_PACK;
+    const uint place = borderEntryOf(batch, index - 1);
+    ray = borderRayAt(batch, params, place, index - 1 - starts[place]);
   } else {
-    ReverseWalk walk = startReverseWalk();
-    ray = walkToReverseRay(&walk, scene, source, faces, params, index - 1);
+    ray = reverseRayAt(items, faces, params, index - 1);
   }
   PvsEntry entry;
   entry.origin_triangle = (uint4)(as_uint3(ray.origin.xyz), triangle);
   entry.direction_stage = (uint4)(as_uint3(ray.direction.xyz), stage);
-  entries[end + i] = entry;
+  list[end + i] = entry;
 }
 
 /// Puts triangles into the set and the list without a ray.

@@ -1,15 +1,15 @@
 // Border rays of the original method, one level a launch (core/shared/gvs_border.h).
 #include "cl_kernels/sampling_state.cl"
 
-/// Slots 0 .. total - 1 of the level over the entries from `first_entry`; traces those whose neighbours hit
-/// different triangles. Notes as traceBorder does.
-__kernel void traceGvsBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StageParams params,
-                             __global const PvsEntry* entries, uint first_entry, uint level, uint total,
+/// Slots 0 .. total - 1 of the level over the batch; traces those whose neighbours hit different triangles.
+/// Notes as traceBorder does.
+__kernel void traceGvsBorder(SL_SCENE_ARGS, SL_SET_ARGS, StageParams params, SL_BORDER_ARGS,
+                             __global const uint* record_of, uint level, uint total,
                              __global uint* border_hits, volatile __global uint* discontinuity_bits,
                              volatile __global uint* ray_counters) {
   const SceneRef scene = SL_SCENE_PACK;
   const SetRef set = SL_SET_PACK;
-  const BorderSource source = {record_of, entries, first_entry};
+  const BorderBatch batch = SL_BORDER_PACK;
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   const uint slots = gvsSlots(level);
   Ray rays[SL_PACKET];
@@ -26,7 +26,7 @@ __kernel void traceGvsBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StagePa
                                  border_hits[entry + gvsAfter(level, position)])) {
       continue;
     }
-    rays[lane] = gvsRayAt(scene, source, params, index[lane]);
+    rays[lane] = borderRayAt(batch, params, entry / kGvsPositions, position);
     traced += hasDirection(rays[lane]) ? 1 : 0;
   }
   if (traced == 0) return;
@@ -35,7 +35,7 @@ __kernel void traceGvsBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StagePa
     if (!hasDirection(rays[lane])) continue;
     border_hits[index[lane]] = hits[lane].triangle;
     insertHit(set, hits[lane].triangle, index[lane] + 1);
-    const uint entry = first_entry + index[lane] / kGvsPositions;
+    const uint entry = border_first + index[lane] / kGvsPositions;
     const Corners t = triangleCorners(scene, record_of, entries[entry].origin_triangle.w);
     if (isGvsDiscontinuity(rays[lane], hits[lane], t.a, t.b, t.c, params)) {
       atomic_or(&discontinuity_bits[index[lane] >> 5], 1u << (index[lane] & 31));

@@ -39,102 +39,95 @@ static inline Corners triangleCorners(SceneRef scene, __global const uint* recor
   return corners;
 }
 
-/// Counters are spread over this many words, by work-group, so that they do not fight for one.
-#define SL_COUNTERS 256
+/// Words of the counters, which the host reads at once. Rays are spread over many, by work-group, so that
+/// they do not fight for one. Word 0 is the set's overflow flag.
+#define SL_RAY_COUNTER 1
+#define SL_RAY_COUNTERS 256
+#define SL_MISSING_COUNTER 257
 
 static inline void countRays(volatile __global uint* counters, uint rays) {
-  if (rays > 0) atomic_add(&counters[get_group_id(0) % SL_COUNTERS], rays);
+  if (rays > 0) atomic_add(&counters[SL_RAY_COUNTER + get_group_id(0) % SL_RAY_COUNTERS], rays);
 }
 
-/// Where border rays come from: entries first .. of the list, borderRayCount rays each.
-typedef struct BorderSource {
-  __global const uint* record_of;
+/// The batch of border rays: those of the entries from `first` on, borderRayCount each.
+#define SL_BORDER_ARGS                                                                   \
+  __global const PvsEntry *entries, uint border_first, __global const BorderEdge *edges, \
+      __global const uint *starts, uint border_count
+#define SL_BORDER_PACK                                 \
+  (BorderBatch) {                                      \
+    entries, border_first, edges, starts, border_count \
+  }
+typedef struct BorderBatch {
   __global const PvsEntry* entries;
   uint first;
-} BorderSource;
+  __global const BorderEdge* edges;  ///< three an entry, by borderEdges
+  __global const uint* starts;       ///< border rays of the batch before each entry's, and all
+  uint count;                        ///< entries
+} BorderBatch;
 
-/// A walk over border rays: rays one after the other share the side of a border polygon.
-typedef struct BorderWalk {
-  uint place;  ///< entry * 3 + side; kNoTriangle before the first ray
-  float3 origin;
-  BorderEdge edge;
-} BorderWalk;
-
-static inline BorderWalk startBorderWalk() {
-  BorderWalk walk;
-  walk.place = kNoTriangle;
-  return walk;
-}
-
-/// Border ray `index` (0 ..) of the source; moves the walk there.
-static inline Ray walkToBorderRay(BorderWalk* walk, SceneRef scene, BorderSource source, StageParams params,
-                                  uint index) {
-  const uint per_entry = borderRayCount(params);
-  const uint entry_index = index / per_entry;
-  const uint k = index - entry_index * per_entry;
-  const uint side = borderSide(k, params);
-  if (entry_index * 3 + side != walk->place) {
-    const uint4 entry = source.entries[source.first + entry_index].origin_triangle;
-    const Corners corners = triangleCorners(scene, source.record_of, entry.w);
-    walk->place = entry_index * 3 + side;
-    walk->origin = as_float4(entry).xyz;
-    walk->edge = borderEdge(corners.a, corners.b, corners.c, side, walk->origin, params);
+/// The entry of the batch that border ray `index` belongs to.
+static inline uint borderEntryOf(BorderBatch batch, uint index) {
+  uint low = 0, high = batch.count;
+  while (high - low > 1) {
+    const uint middle = (low + high) / 2;
+    if (batch.starts[middle] <= index) {
+      low = middle;
+    } else {
+      high = middle;
+    }
   }
-  return borderRay(walk->edge, k, walk->origin, params);
+  return low;
 }
 
-/// The same of the original method: `index` is a position of an entry's polygon.
-static inline Ray gvsRayAt(SceneRef scene, BorderSource source, StageParams params, uint index) {
-  const uint entry_index = index / kGvsPositions;
-  const uint position = index - entry_index * kGvsPositions;
-  const uint4 entry = source.entries[source.first + entry_index].origin_triangle;
-  const Corners t = triangleCorners(scene, source.record_of, entry.w);
-  const float3 origin = as_float4(entry).xyz;
-  const float3 from = gvsVertex(t.a, t.b, t.c, gvsFirstVertex(position), origin, params);
-  if (position % 8 == 0) return rayTo(origin, from);
-  const float3 to = gvsVertex(t.a, t.b, t.c, gvsSecondVertex(position), origin, params);
-  return rayTo(origin, gvsPoint(from, to, position));
+/// As borderEntryOf, from the entry of a ray shortly before.
+static inline uint nextBorderEntry(BorderBatch batch, uint entry, uint index) {
+  while (entry + 1 < batch.count && batch.starts[entry + 1] <= index) ++entry;
+  return entry;
 }
 
-/// Border ray `index` (0 ..) of the source, by the method of the parameters.
-static inline Ray borderRayAt(SceneRef scene, BorderSource source, StageParams params, uint index) {
-  if (isGvs(params)) return gvsRayAt(scene, source, params, index);
-  BorderWalk walk = startBorderWalk();
-  return walkToBorderRay(&walk, scene, source, params, index);
+/// Ray k of the batch's entry.
+static inline Ray borderRayAt(BorderBatch batch, StageParams params, uint entry, uint k) {
+  const float3 origin = as_float4(batch.entries[batch.first + entry].origin_triangle).xyz;
+  __global const BorderEdge* edges = &batch.edges[entry * 3];
+  if (isGvs(params)) {
+    const uint first = gvsFirstVertex(k), second = gvsSecondVertex(k);
+    const float3 from = gvsVertexOf(edges[first / 3], first);
+    return rayTo(origin, gvsPoint(from, gvsVertexOf(edges[second / 3], second), k));
+  }
+  return borderRay(edges[borderSide(k, slUint(edges->bisector.w))], k, origin);
 }
 
-/// Where reverse rays come from: discontinuities first .. of the last border launch.
-typedef struct ReverseSource {
-  BorderSource border;
-  __global const uint* border_hits;      ///< a border ray: what it hit
-  __global const uint* discontinuities;  ///< indices of border rays
-  uint first;
-  ulong items_before;  ///< discontinuities of the cell before this border launch
-} ReverseSource;
+/// The triangle of an entry and its border ray k, whose polygon has so many samples an edge.
+static inline Ray entryBorderRay(Corners t, float3 origin, StageParams params, uint k, uint samples) {
+  if (!isGvs(params)) {
+    return borderRay(borderEdge(t.a, t.b, t.c, borderSide(k, samples), origin, params), k, origin);
+  }
+  const float3 from = gvsVertex(t.a, t.b, t.c, gvsFirstVertex(k), origin, params);
+  return rayTo(origin, gvsPoint(from, gvsVertex(t.a, t.b, t.c, gvsSecondVertex(k), origin, params), k));
+}
 
-/// Discontinuity `place` (0 ..) of the source.
-static inline ReverseItem reverseItemAt(SceneRef scene, ReverseSource source, __global const Face* faces,
-                                        StageParams params, uint place) {
-  const uint border_index = source.discontinuities[source.first + place];
-  const Ray border = borderRayAt(scene, source.border, params, border_index);
+/// The item of a discontinuity. number: its running number in the cell.
+static inline ReverseItem reverseItemOf(SceneRef scene, __global const uint* record_of,
+                                        __global const PvsEntry* entries, __global const Face* faces,
+                                        StageParams params, Discontinuity discontinuity, ulong number) {
+  const uint4 ray = discontinuity.ray;
+  const PvsEntry entry = entries[ray.x];
+  const Corners t = triangleCorners(scene, record_of, entry.origin_triangle.w);
+  const Ray border = entryBorderRay(t, as_float4(entry.origin_triangle).xyz, params, ray.y, ray.w);
   const float3 target = add3(border.origin.xyz, border.direction.xyz);
-  const ulong number = source.items_before + source.first + place;
   uint mask = 0;
   for (uint f = 0; f < params.counts.w; ++f) mask |= (faceLooksAt(faces[f], target) ? 1u : 0u) << f;
   ReverseItem item;
   item.target = (float4)(target, 0);
-  const uint occluder = source.border_hits[border_index];
-  item.number = (uint4)((uint)number, (uint)(number >> 32), mask, occluder != kNoTriangle);
+  item.number = (uint4)((uint)number, (uint)(number >> 32), mask, ray.z != kNoTriangle);
   item.a = item.b = item.c = (float4)(0);
-  if (occluder != kNoTriangle) {
-    const Corners corners = triangleCorners(scene, source.border.record_of, occluder);
+  if (ray.z != kNoTriangle) {
+    const Corners corners = triangleCorners(scene, record_of, ray.z);
     item.a.xyz = corners.a;
     item.b.xyz = corners.b;
     item.c.xyz = corners.c;
   }
   if (isGvs(params)) {
-    const PvsEntry entry = source.border.entries[source.border.first + border_index / kGvsPositions];
-    const Corners t = triangleCorners(scene, source.border.record_of, entry.origin_triangle.w);
     Ray found;
     found.origin = (float4)(as_float4(entry.origin_triangle).xyz, 0);
     found.direction = (float4)(as_float4(entry.direction_stage).xyz, 0);
@@ -143,37 +136,20 @@ static inline ReverseItem reverseItemAt(SceneRef scene, ReverseSource source, __
   return item;
 }
 
-/// A walk over reverse rays: rays one after the other share a discontinuity.
-typedef struct ReverseWalk {
-  uint place;  ///< kNoTriangle before the first ray
-  ReverseItem item;
-} ReverseWalk;
-
-static inline ReverseWalk startReverseWalk() {
-  ReverseWalk walk;
-  walk.place = kNoTriangle;
-  return walk;
-}
-
-/// Reverse ray `index` (0 ..) of the source, or none; moves the walk there.
-static inline Ray walkToReverseRay(ReverseWalk* walk, SceneRef scene, ReverseSource source,
-                                   __global const Face* faces, StageParams params, uint index) {
+/// Reverse ray `index` (0 ..) of the items, or none.
+static inline Ray reverseRayAt(__global const ReverseItem* items, __global const Face* faces,
+                               StageParams params, uint index) {
   const uint per_item = reverseRayCount(params);
   const uint place = index / per_item;
   const uint k = index - place * per_item;
-  if (place != walk->place) {
-    walk->place = place;
-    walk->item = reverseItemAt(scene, source, faces, params, place);
-  }
-  if (walk->item.number.z == 0) return noRay();
+  const ReverseItem item = items[place];
+  if (item.number.z == 0) return noRay();
   if (isGvs(params)) {
     Ray ray = noRay();
-    for (uint f = 0; f < params.counts.w && !hasDirection(ray); ++f) {
-      ray = gvsReverseRay(walk->item, faces[f], k);
-    }
+    for (uint f = 0; f < params.counts.w && !hasDirection(ray); ++f) ray = gvsReverseRay(item, faces[f], k);
     return ray;
   }
-  return reverseRay(walk->item, faces[reverseFace(walk->item, k)], k, params);
+  return reverseRay(item, faces[reverseFace(item, k)], k, params);
 }
 
 #endif

@@ -18,7 +18,7 @@ __kernel void traceRandom(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* faces
   countRays(ray_counters, traced);
 }
 
-/// As traceRandom, but only counts the hits outside the set, in the word after the ray counters.
+/// As traceRandom, but only counts the hits outside the set.
 __kernel void countMissing(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* faces, uint4 shifts,
                            RandomSegment segment, volatile __global uint* ray_counters) {
   const SceneRef scene = SL_SCENE_PACK;
@@ -35,26 +35,27 @@ __kernel void countMissing(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* face
     traced += offsets[lane] != kNoTriangle ? 1 : 0;
     missing += triangle != kNoTriangle && !isInSet(set, triangle) ? 1 : 0;
   }
-  if (missing > 0) atomic_add(&ray_counters[SL_COUNTERS], missing);
+  if (missing > 0) atomic_add(&ray_counters[SL_MISSING_COUNTER], missing);
   countRays(ray_counters, traced);
 }
 
-/// Border rays 0 .. total - 1 of the entries from `first_entry`; notes what each hit and, a bit a ray,
-/// whether it met a discontinuity.
-__kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StageParams params,
-                          __global const PvsEntry* entries, uint first_entry, uint total,
+/// All border rays of the batch; notes what each hit and, a bit a ray, whether it met a discontinuity.
+__kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, StageParams params, SL_BORDER_ARGS,
                           __global uint* border_hits, volatile __global uint* discontinuity_bits,
                           volatile __global uint* ray_counters) {
   const SceneRef scene = SL_SCENE_PACK;
   const SetRef set = SL_SET_PACK;
-  const BorderSource source = {record_of, entries, first_entry};
+  const BorderBatch batch = SL_BORDER_PACK;
   const uint first = (uint)get_global_id(0) * SL_PACKET;
+  const uint total = starts[border_count];
   const uint count = min((uint)SL_PACKET, total - min(first, total));
+  if (count == 0) return;
   Ray rays[SL_PACKET];
   Hit hits[SL_PACKET];
-  BorderWalk walk = startBorderWalk();
+  uint entry = borderEntryOf(batch, first);
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
-    rays[lane] = lane < count ? walkToBorderRay(&walk, scene, source, params, first + lane) : noRay();
+    if (lane < count) entry = nextBorderEntry(batch, entry, first + lane);
+    rays[lane] = lane < count ? borderRayAt(batch, params, entry, first + lane - starts[entry]) : noRay();
   }
   traceRays(scene, rays, hits);
   uint bits = 0;
@@ -67,24 +68,18 @@ __kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, StageParam
   countRays(ray_counters, count);
 }
 
-/// Reverse rays 0 .. total - 1 of the discontinuities from `first_item`: one a lane.
-__kernel void traceReverse(SL_SCENE_ARGS, SL_SET_ARGS, SL_CORNER_ARGS, __global const Face* faces,
-                           StageParams params, __global const PvsEntry* entries, uint first_entry,
-                           __global const uint* border_hits, __global const uint* discontinuities,
-                           uint first_item, ulong items_before, uint total,
+/// Reverse rays 0 .. total - 1 of the items: one a lane.
+__kernel void traceReverse(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* faces, StageParams params,
+                           __global const ReverseItem* items, uint total,
                            volatile __global uint* ray_counters) {
   const SceneRef scene = SL_SCENE_PACK;
   const SetRef set = SL_SET_PACK;
-  const ReverseSource source = {
-      {record_of, entries, first_entry}, border_hits, discontinuities, first_item, items_before};
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   Ray rays[SL_PACKET];
   Hit hits[SL_PACKET];
-  ReverseWalk walk = startReverseWalk();
   uint traced = 0;
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
-    rays[lane] =
-        first + lane < total ? walkToReverseRay(&walk, scene, source, faces, params, first + lane) : noRay();
+    rays[lane] = first + lane < total ? reverseRayAt(items, faces, params, first + lane) : noRay();
     traced += hasDirection(rays[lane]) ? 1 : 0;
   }
   if (traced == 0) return;

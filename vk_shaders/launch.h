@@ -40,11 +40,13 @@ SL_STRUCT(VulkanLaunch) {
   uint64 entries;  ///< PvsEntry[]
   // Stages.
   uint64 segments;         ///< RandomSegment[] of the batch
-  uint64 border_edges;     ///< BorderEdge[], three an entry of the border launch
+  uint64 border_starts;    ///< uint[] an entry of the border batch: border rays before its own
+  uint64 border_edges;     ///< BorderEdge[], three an entry of the border batch
   uint64 reverse_items;    ///< ReverseItem[] of the reverse launch
   uint64 border_hits;      ///< uint[] a border ray: leaf that it hit, kNoTriangle or kNotTraced
   uint64 bits;             ///< a bit a border ray: it met a discontinuity
-  uint64 discontinuities;  ///< uint[]: indices of border rays
+  uint64 kept_bits;        ///< of `bits`, those that get reverse rays
+  uint64 discontinuities;  ///< Discontinuity[]: those that wait for their reverse rays
   uint64 rays;             ///< Ray[] that trace_rays reads, stage_rays writes; ViewFrame[] of trace_views
   uint64 hits;             ///< Hit[] that trace_rays and trace_slots write; uint[] of trace_views: triangles
   // Lists from bits.
@@ -53,7 +55,7 @@ SL_STRUCT(VulkanLaunch) {
   uint64 indices;       ///< uint[]: triangles, or indices of set bits
   uint64 old_keys;      ///< the hash set before it grew
   uint64 old_winner;
-  uint64 items_before;   ///< discontinuities of the cell before those of the last border launch
+  uint64 items_before;   ///< discontinuities of the cell before those that wait
   uint64 hemicube;       ///< ViewFrame[5] of the hemicube that is drawn
   uint64 hemicubes;      ///< ViewFrame[5] a hemicube of the batch that is collected; 0: it was traced
   uint64 chunk_bounds;   ///< float[6] a chunk: the box around it
@@ -61,7 +63,9 @@ SL_STRUCT(VulkanLaunch) {
   uint64 raster_leaves;  ///< uint[] a pixel of the hemicube's images: leaf or kNoTriangle
   uint capacity;         ///< of the hash set; 0: array
   uint old_capacity;
-  uint border_first;   ///< entry of the first border ray
+  uint border_first;   ///< first entry of the border batch
+  uint border_count;   ///< its entries
+  uint waiting;        ///< in the list of discontinuities
   uint reverse_first;  ///< first discontinuity of the reverse rays
   uint stage;          ///< kStage... of the batch that is collected
   uint segment_count;

@@ -16,9 +16,41 @@ vec3 leafCorner(uint leaf, uint corner) {
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer BorderEdges {
   BorderEdge at[];
 };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Discontinuities {
+  Discontinuity at[];
+};
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer ReverseItems {
   ReverseItem at[];
 };
+
+/// The entry of the border batch that border ray `index` belongs to. Needs what sum_border_rays wrote, but for
+/// the original method.
+uint borderEntryOf(uint index) {
+  if (isGvs(SL_LAUNCH.params)) return index / kGvsPositions;
+  Words starts = Words(SL_LAUNCH.border_starts);
+  uint low = 0u;
+  uint high = SL_LAUNCH.border_count;
+  while (high - low > 1u) {
+    uint middle = (low + high) / 2u;
+    if (starts.at[middle] <= index) {
+      low = middle;
+    } else {
+      high = middle;
+    }
+  }
+  return low;
+}
+
+/// Which ray of its entry's polygon border ray `index` is.
+uint borderRayOf(uint index, uint entry_index) {
+  if (isGvs(SL_LAUNCH.params)) return index - entry_index * kGvsPositions;
+  return index - Words(SL_LAUNCH.border_starts).at[entry_index];
+}
+
+/// Samples between the ends of the long edges of the entry's polygon. Needs what border_edges wrote.
+uint borderSamplesAt(uint entry_index) {
+  return uint(BorderEdges(SL_LAUNCH.border_edges).at[3u * entry_index].bisector.w);
+}
 
 /// The leaf of the launch's entry `entry_index`.
 uint borderLeaf(uint entry_index) {
@@ -44,51 +76,56 @@ vec3 borderVertexAt(uint entry_index, uint vertex) {
   return gvsVertexOf(BorderEdges(SL_LAUNCH.border_edges).at[3u * entry_index + vertex / 3u], vertex);
 }
 
-/// Border ray `index` (0 ..) of the last border launch. Needs what border_edges wrote.
+/// Border ray `index` (0 ..) of the border batch. Needs what border_edges wrote.
 Ray borderRayAt(uint index) {
   StageParams params = SL_LAUNCH.params;
-  uint per_entry = borderRayCount(params);
-  uint entry_index = index / per_entry;
-  uint k = index - entry_index * per_entry;
+  uint entry_index = borderEntryOf(index);
+  uint k = borderRayOf(index, entry_index);
   uvec4 entry = Entries(SL_LAUNCH.entries).at[SL_LAUNCH.border_first + entry_index].origin_triangle;
   if (isGvs(params)) {
     vec3 first = borderVertexAt(entry_index, gvsFirstVertex(k));
     return rayTo(borderOrigin(entry), gvsPoint(first, borderVertexAt(entry_index, gvsSecondVertex(k)), k));
   }
-  BorderEdge edge = BorderEdges(SL_LAUNCH.border_edges).at[3u * entry_index + borderSide(k, params)];
-  return borderRay(edge, k, borderOrigin(entry), params);
+  uint side = borderSide(k, borderSamplesAt(entry_index));
+  return borderRay(BorderEdges(SL_LAUNCH.border_edges).at[3u * entry_index + side], k, borderOrigin(entry));
 }
 
-/// The original method's item of a discontinuity of the launch's entry.
-ReverseItem gvsReverseItemAt(ReverseItem item, uint entry_index) {
-  PvsEntry entry = Entries(SL_LAUNCH.entries).at[SL_LAUNCH.border_first + entry_index];
-  uint leaf = borderLeaf(entry_index);
-  Ray ray;
-  ray.origin = vec4(borderOrigin(entry.origin_triangle), 0.0f);
-  ray.direction = vec4(borderOrigin(entry.direction_stage), 0.0f);
-  return gvsReverseItem(item, ray, leafCorner(leaf, 0u), leafCorner(leaf, 1u), leafCorner(leaf, 2u),
-                        SL_LAUNCH.params);
-}
-
-/// Discontinuity `place` (0 ..) of the last border launch: for reverse_items.
+/// The item of discontinuity `place` (0 ..) of those that wait: for reverse_items.
 ReverseItem reverseItemAt(uint place) {
-  uint border_index = Words(SL_LAUNCH.discontinuities).at[place];
-  Ray border = borderRayAt(border_index);
+  StageParams params = SL_LAUNCH.params;
+  uvec4 ray = Discontinuities(SL_LAUNCH.discontinuities).at[place].ray;
+  PvsEntry entry = Entries(SL_LAUNCH.entries).at[ray.x];
+  uint leaf = Words(SL_LAUNCH.leaf_of).at[entry.origin_triangle.w];
+  vec3 p0 = leafCorner(leaf, 0u);
+  vec3 p1 = leafCorner(leaf, 1u);
+  vec3 p2 = leafCorner(leaf, 2u);
+  vec3 origin = borderOrigin(entry.origin_triangle);
+  Ray border;
+  if (isGvs(params)) {
+    vec3 first = gvsVertex(p0, p1, p2, gvsFirstVertex(ray.y), origin, params);
+    vec3 second = gvsVertex(p0, p1, p2, gvsSecondVertex(ray.y), origin, params);
+    border = rayTo(origin, gvsPoint(first, second, ray.y));
+  } else {
+    border = borderRay(borderEdge(p0, p1, p2, borderSide(ray.y, ray.w), origin, params), ray.y, origin);
+  }
   vec3 target = add3(xyz3(border.origin), xyz3(border.direction));
   uint64 number = SL_LAUNCH.items_before + place;
   uint mask = 0u;
-  for (uint f = 0u; f < SL_LAUNCH.params.counts.w; ++f) {
+  for (uint f = 0u; f < params.counts.w; ++f) {
     mask |= (faceLooksAt(Faces(SL_LAUNCH.faces).at[f], target) ? 1u : 0u) << f;
   }
+  bool occluded = ray.z != kNoTriangle;
   ReverseItem item;
   item.target = vec4(target.x, target.y, target.z, 0.0f);
-  uint occluder = Words(SL_LAUNCH.border_hits).at[border_index];
-  bool occluded = occluder != kNoTriangle;
   item.number = uvec4(uint(number), uint(number >> 32), mask, occluded ? 1u : 0u);
-  item.a = occluded ? vec4(leafCorner(occluder, 0u), 0.0f) : vec4(0.0f);
-  item.b = occluded ? vec4(leafCorner(occluder, 1u), 0.0f) : vec4(0.0f);
-  item.c = occluded ? vec4(leafCorner(occluder, 2u), 0.0f) : vec4(0.0f);
-  return isGvs(SL_LAUNCH.params) ? gvsReverseItemAt(item, border_index / kGvsPositions) : item;
+  item.a = occluded ? vec4(leafCorner(ray.z, 0u), 0.0f) : vec4(0.0f);
+  item.b = occluded ? vec4(leafCorner(ray.z, 1u), 0.0f) : vec4(0.0f);
+  item.c = occluded ? vec4(leafCorner(ray.z, 2u), 0.0f) : vec4(0.0f);
+  if (!isGvs(params)) return item;
+  Ray found;
+  found.origin = vec4(origin, 0.0f);
+  found.direction = vec4(borderOrigin(entry.direction_stage), 0.0f);
+  return gvsReverseItem(item, found, p0, p1, p2, params);
 }
 
 /// Reverse ray `index` (0 ..) of the reverse launch, or none. Needs what reverse_items wrote.

@@ -72,15 +72,32 @@ void declareSampling(CLI::App& command, BakeParams& params) {
   command
       .add_flag_callback(
           "--thesis", [&params] { setThesisParams(params); },
-          "the thesis's samples, distances in world units (0.001, 0.985) and stop rule; what is given "
-          "beside it wins")
+          "the thesis's samples, distances in world units (0.001, 0.985), order and stop rule; what is "
+          "given beside it wins")
       ->group(kParamsGroup);
   declareCount(command, "--n-rand", params.n_rand, 1, 4294967293.0, "random rays an iteration");
   declareCount(command, "--n-abs-edge", params.n_abs_edge, 0, 1000,
-               "samples along each long edge of the border polygon");
+               "samples along each long edge of the border polygon at most");
+  declareNumber(command, "--abs-spacing", params.abs_spacing,
+                "fewer of them where they come closer to each other, in radians seen from the ray's origin "
+                "(0: never)");
   declareCount(command, "--n-rs-edge", params.n_rs_edge, 0, 1000,
                "reverse samples along each edge of the cell's faces");
   declareCount(command, "--n-rs-area", params.n_rs_area, 0, 100000, "reverse samples on the cell's faces");
+  declareCount(
+      command, "--reverse-stride", params.reverse_stride, 1, 4294967295.0,
+      "of neighbouring border samples with the same occluder, reverse samples for the first and every "
+      "N-th (1: for all)");
+  command
+      .add_option_function<std::string>(
+          "--order", [&params](const std::string& name) { params.order = *orderOf(name); },
+          "yield: the kind of ray that finds most goes first; queue: reverse rays of a batch follow its "
+          "border "
+          "rays, as in the thesis")
+      ->check(CLI::IsMember({"yield", "queue"}))
+      ->type_name("NAME")
+      ->default_str(orderName(params.order))
+      ->group(kParamsGroup);
   declareNumber(command, "--delta-abs", params.delta_abs,
                 "border distance in world units (thesis: 0.001), added to");
   declareNumber(command, "--delta-abs-relative", params.delta_abs_relative,

@@ -77,6 +77,8 @@ void showParams(const BakeParams& params) {
   row("seed", std::to_string(params.seed));
   row("samples", fmt::format("n_rand {}, n_abs_edge {}, n_rs_edge {}, n_rs_area {}", params.n_rand,
                              params.n_abs_edge, params.n_rs_edge, params.n_rs_area));
+  row("thinning", fmt::format("abs_spacing {:g}, reverse_stride {}, order {}", params.abs_spacing,
+                              params.reverse_stride, orderName(params.order)));
   row("distances",
       fmt::format("delta_abs {:g} + {:g} of the distance, delta_rs {:g} + {:g} of the distance",
                   params.delta_abs, params.delta_abs_relative, params.delta_rs, params.delta_rs_relative));

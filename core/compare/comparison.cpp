@@ -144,7 +144,14 @@ void checkOptions(const CompareOptions& options) {
 
 void warmUp(std::span<Device* const> devices, const Scene& scene, const ViewCell& cell,
             const CompareOptions& options, const CompareEvents& events) {
+  CompareOptions brief = options;
+  brief.params.n_rand = brief.params.batch_rays = 1u << 16;
+  brief.params.max_rays = 1u << 21;
+  brief.params.max_seconds = 0;
+  brief.params.order = Order::kQueue;
+  brief.points = 1;
   for (size_t m = 0; m < options.methods.size(); ++m) {
+    bakeOnce(*devices[m], scene, cell, 0, brief, options.methods[m], options.seed, events);
     bakeOnce(*devices[m], scene, cell, 0, options, options.methods[m], options.seed, events);
   }
 }

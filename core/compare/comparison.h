@@ -61,8 +61,9 @@ struct CompareEvents {
 /// Throws Error (wrong usage) that names the option that is out of range. Every method needs a budget.
 void checkOptions(const CompareOptions& options);
 
-/// One bake of the cell by every method, which does not count: drivers compile shaders and make buffers when
-/// they are first needed. Throws Error, Interrupted.
+/// Two bakes of the cell by every method, which do not count: drivers compile shaders and make buffers when
+/// they are first needed. The first is short and goes through all stages, whatever the budget. Throws Error,
+/// Interrupted.
 void warmUp(std::span<Device* const> devices, const Scene& scene, const ViewCell& cell,
             const CompareOptions& options, const CompareEvents& events = {});
 

@@ -9,6 +9,7 @@
 #include "core/crosscheck/adversarial_rays.h"
 #include "core/crosscheck/ray_random.h"
 #include "core/gvs/bake_cell.h"
+#include "core/gvs/make_stage_params.h"
 #include "core/gvs/stage_rays.h"
 #include "core/shared/random_ray.h"
 
@@ -37,14 +38,10 @@ BakeParams searchParams(uint64_t seed) {
 }
 
 StageParams stageParams(const BakeParams& params, size_t faces, uint64_t key) {
-  StageParams stage{};
-  stage.counts = uvec4(params.n_abs_edge, params.n_rs_edge, params.n_rs_area, faces);
   RayRandom random(key, kShiftsKey);
-  stage.shifts = uvec4(random.bits() >> 32, random.pick(kHaltonPeriod3), random.pick(kHaltonPeriod5),
-                       random.pick(kHaltonPeriod7));
-  stage.distances =
-      vec4(params.delta_abs_relative, params.delta_abs, params.delta_rs_relative, params.delta_rs);
-  return stage;
+  const uint32_t base2 = uint32_t(random.bits() >> 32), base3 = random.pick(kHaltonPeriod3);
+  const uint32_t base5 = random.pick(kHaltonPeriod5), base7 = random.pick(kHaltonPeriod7);
+  return makeStageParams(params, faces, uvec4(base2, base3, base5, base7));
 }
 
 /// Whether all numbers are finite: from a scene as large as floats go, rays may run out of them.
@@ -58,9 +55,8 @@ Ray anyBorderRay(const Scene& scene, std::span<const PvsEntry> entries, const St
                  RayRandom& random) {
   if (entries.empty()) return noRay();
   const PvsEntry& entry = entries[random.pick(entries.size())];
-  const uint32_t k = random.pick(borderRayCount(params));
-  const BorderEdge edge = borderEdgeOf(scene, entry, borderSide(k, params), params);
-  return borderRay(edge, k, entryOrigin(entry), params);
+  const uint32_t samples = borderSamplesOf(scene, entry, params);
+  return borderRayOf(scene, entry, random.pick(borderRayCount(samples, params)), samples, params);
 }
 
 }  // namespace

@@ -17,7 +17,6 @@
 #include "core/error.h"
 #include "core/gvs/random_segment.h"
 #include "core/gvs/stage_rays.h"
-#include "core/shared/random_ray.h"
 
 namespace sightline {
 namespace {
@@ -28,28 +27,17 @@ constexpr size_t kGrain = 64;
 
 class CpuDevice final : public Device {
   // Generators first: their types are deduced.
-  /// A ray with its index (1 ..) in the batch.
-  struct BatchRay {
-    Ray ray;
-    uint32_t index;
-  };
-
-  /// Generator of a segment's random rays, by slot.
   auto slotRays(const RandomSegment& segment, uvec4 shifts) const {
-    return
-        [&segment, shifts, face = faces_.at(segment.range.x), walk = startSlotWalk()](uint32_t slot) mutable {
-          walk = walkToSlot(walk, segment, slot);
-          const uint32_t offset = walkOffset(walk, segment, slot);
-          return BatchRay{offsetRay(segment, face, shifts, offset), segment.batch.x + offset};
-        };
+    return SlotRays(segment, faces_.at(segment.range.x), shifts);
+  }
+
+  BorderRays borderBatch() const {
+    return {scene_, std::span(entries_).subspan(border_first_), border_starts_, params_};
   }
 
   /// Generator of the border rays of the last traceBorder.
   auto borderRays() const {
-    return [rays = BorderRays(scene_, std::span(entries_).subspan(border_first_), params_)](
-               uint32_t number) mutable {
-      return BatchRay{rays(number), number + 1};
-    };
+    return [rays = borderBatch()](uint32_t number) mutable { return BatchRay{rays(number), number + 1}; };
   }
 
   /// Generator of one level of the last traceBorder by the original method; positions between samples that
@@ -71,23 +59,12 @@ class CpuDevice final : public Device {
       const uint32_t k = number % per_item;
       if (place != number / per_item) {
         place = number / per_item;
-        item = reverseItem(reverse_first_ + place);
+        const uint32_t index = reverse_first_ + place;
+        item =
+            reverseItemOf(scene_, faces_, entries_, discontinuities_[index], items_before_ + index, params_);
       }
       return BatchRay{reverseRayOf(item, faces_, k, params_), number + 1};
     };
-  }
-
-  /// Whose border ray it was.
-  const PvsEntry& borderEntry(uint32_t border_index) const {
-    return entries_[border_first_ + border_index / borderRayCount(params_)];
-  }
-
-  /// A discontinuity of the last traceBorder.
-  ReverseItem reverseItem(uint32_t index) const {
-    const uint32_t border_index = discontinuities_[index];
-    const Ray border = borderRays()(border_index).ray;
-    return reverseItemOf(scene_, faces_, borderEntry(border_index), border, border_hits_[border_index],
-                         items_before_ + index, params_);
   }
 
  public:
@@ -124,33 +101,39 @@ class CpuDevice final : public Device {
         [&](const BatchRay& ray, const Hit& hit, SetRef set) { insertHit(set, hit.triangle, ray.index); });
   }
 
-  uint32_t traceBorder(uint32_t first, uint32_t count) override {
-    items_before_ += discontinuities_.size();
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
     border_first_ = first;
-    const uint64_t total = uint64_t(count) * borderRayCount(params_);
+    std::span<const PvsEntry> pending = std::span(entries_).subspan(first);
+    pending = pending.first(std::min<size_t>(pending.size(), mostBorderEntries(most_rays, params_)));
+    border_starts_ = borderStarts(scene_, pending, params_);
+    const uint32_t count = borderBatchEntries(border_starts_, most_rays);
+    border_starts_.resize(count + 1);
+    const uint64_t total = border_starts_.back();
     is_discontinuity_.assign(total, 0);
+    border_hits_.assign(total, isGvs(params_) ? kNotTraced : kNoTriangle);
+    const BorderRays batch = borderBatch();
     const auto take = [&](const BatchRay& ray, const Hit& hit, SetRef set) {
       const uint32_t index = ray.index - 1;
       border_hits_[index] = hit.triangle;
-      is_discontinuity_[index] = isDiscontinuityOf(scene_, borderEntry(index), ray.ray, hit, params_) ? 1 : 0;
+      const PvsEntry& entry = entries_[first + batch.entryOf(index)];
+      is_discontinuity_[index] = isDiscontinuityOf(scene_, entry, ray.ray, hit, params_) ? 1 : 0;
       insertHit(set, hit.triangle, ray.index);
     };
     if (isGvs(params_)) {
-      border_hits_.assign(total, kNotTraced);
       for (uint32_t level = 0; level < kGvsLevels; ++level) {
         rays_ += launch(
             uint64_t(count) * gvsSlots(level), [&] { return gvsRays(level); }, take);
       }
     } else {
-      border_hits_.assign(total, kNoTriangle);
       rays_ += launch(
           total, [&] { return borderRays(); }, take);
     }
+    return {count, appendDiscontinuities(count)};
+  }
+
+  void dropDiscontinuities() override {
+    items_before_ += discontinuities_.size();
     discontinuities_.clear();
-    for (uint32_t index = 0; index < total; ++index) {
-      if (is_discontinuity_[index] != 0) discontinuities_.push_back(index);
-    }
-    return static_cast<uint32_t>(discontinuities_.size());
   }
 
   void traceReverse(uint32_t first, uint32_t count) override {
@@ -199,7 +182,8 @@ class CpuDevice final : public Device {
   }
 
   DeviceCounters counters() override {
-    const uint64_t scratch = border_hits_.capacity() * 5 + discontinuities_.capacity() * 4;
+    const uint64_t scratch = border_hits_.capacity() * 5 + border_starts_.capacity() * 8 +
+                             discontinuities_.capacity() * sizeof(Discontinuity);
     return {rays_, residentBytes() + set_.bytes() + entries_.capacity() * sizeof(PvsEntry) + scratch,
             set_.isHash()};
   }
@@ -297,6 +281,23 @@ class CpuDevice final : public Device {
     }
   }
 
+  /// Appends those of the last traceBorder that get reverse rays; returns their number.
+  uint32_t appendDiscontinuities(uint32_t count) {
+    const size_t before = discontinuities_.size();
+    for (uint32_t e = 0; e < count; ++e) {
+      const uint32_t samples = borderSamplesOf(scene_, entries_[border_first_ + e], params_);
+      for (uint64_t index = border_starts_[e]; index < border_starts_[e + 1]; ++index) {
+        if (is_discontinuity_[index] == 0) continue;
+        const auto k = static_cast<uint32_t>(index - border_starts_[e]);
+        const uint32_t place = borderPlace(k, samples), hit = border_hits_[index];
+        const bool follows = place > 0 && is_discontinuity_[index - 1] != 0 && border_hits_[index - 1] == hit;
+        if (!isGvs(params_) && !keepsDiscontinuity(place, follows, params_)) continue;
+        discontinuities_.push_back({uvec4(border_first_ + e, k, hit, samples)});
+      }
+    }
+    return static_cast<uint32_t>(discontinuities_.size() - before);
+  }
+
   /// The ray with this index (1 ..) in the batch that is being collected.
   Ray rayOfBatch(uint32_t stage, uint32_t index) const {
     if (stage == kStageBorder) return borderRays()(index - 1).ray;
@@ -328,10 +329,11 @@ class CpuDevice final : public Device {
   std::vector<PvsEntry> entries_;
   std::vector<RandomSegment> segments_;    ///< of the batch
   uint32_t border_first_ = 0;              ///< entry of the first border ray
+  std::vector<uint64_t> border_starts_;    ///< of the batch: borderStarts
   std::vector<uint32_t> border_hits_;      ///< a border ray: the triangle that it hit
   std::vector<uint8_t> is_discontinuity_;  ///< a border ray
-  std::vector<uint32_t> discontinuities_;  ///< indices of border rays
-  uint64_t items_before_ = 0;              ///< discontinuities of the cell before these
+  std::vector<Discontinuity> discontinuities_;
+  uint64_t items_before_ = 0;  ///< discontinuities of the cell that were dropped
   uint32_t reverse_first_ = 0;
   uint64_t rays_ = 0;
 };

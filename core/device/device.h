@@ -48,10 +48,16 @@ struct DeviceCounters {
   bool hash_set = false;      ///< the set is a hash set, not an array
 };
 
+/// What a launch of border rays did.
+struct BorderBatch {
+  uint32_t entries = 0;          ///< whose border rays were traced
+  uint32_t discontinuities = 0;  ///< appended
+};
+
 /// Runs the stages of GVS++ for one view cell at a time, with scene, set and queue resident. Every
 /// implementation generates the same rays from core/shared and gives the same set, bit for bit.
 ///
-///   beginCell -> { traceRandom*, collect -> { traceBorder, collect, traceReverse*, collect }* }* -> readPvs
+///   beginCell -> { traceRandom* | traceBorder | traceReverse, then collect }* -> readPvs
 ///
 /// A trace stage inserts the triangles it hits under their ray's index in the batch (1, 2, ...; the lowest
 /// wins). collect closes the batch: it appends the new triangles, in ascending id, to the list.
@@ -68,12 +74,17 @@ class Device {
   /// must not overlap.
   virtual void traceRandom(const RandomSegment& segment) = 0;
 
-  /// Border rays of the list's entries first .. first + count - 1: count * border_rays(params) rays.
-  /// Remembers where the discontinuities are and returns their number.
-  virtual uint32_t traceBorder(uint32_t first, uint32_t count) = 0;
+  /// Border rays of the list's entries from `first`: of as many blocks of kBorderBlock entries as have at
+  /// most `most_rays` rays, one block at least; the list may end within the last. Appends the discontinuities
+  /// that get reverse rays to the cell's list of them.
+  virtual BorderBatch traceBorder(uint32_t first, uint32_t most_rays) = 0;
 
-  /// Reverse rays of the discontinuities first .. first + count - 1 of the last traceBorder.
+  /// Reverse rays of the discontinuities first .. first + count - 1 of those appended since beginCell or
+  /// dropDiscontinuities: reverseRayCount rays each at most.
   virtual void traceReverse(uint32_t first, uint32_t count) = 0;
+
+  /// Empties the list of discontinuities. Their running numbers, which their reverse rays depend on, go on.
+  virtual void dropDiscontinuities() = 0;
 
   /// Whether rasterize works here; if not, why in one line.
   virtual std::string whyNoRaster() const { return "only Vulkan devices rasterise"; }

@@ -8,7 +8,6 @@
 
 #include "core/gvs/random_segment.h"
 #include "core/gvs/stage_rays.h"
-#include "core/shared/random_ray.h"
 #include "core/shared/set.h"
 
 namespace sightline {
@@ -19,32 +18,20 @@ constexpr size_t kChunk = 1u << 20;
 
 class NaiveDevice final : public Device {
   // Generators first: their types are deduced.
-  /// A ray with its index (1 ..) in the batch.
-  struct BatchRay {
-    Ray ray;
-    uint32_t index;
-  };
-
   auto slotRays(const RandomSegment& segment, uvec4 shifts) const {
-    return
-        [&segment, shifts, face = faces_.at(segment.range.x), walk = startSlotWalk()](uint32_t slot) mutable {
-          walk = walkToSlot(walk, segment, slot);
-          const uint32_t offset = walkOffset(walk, segment, slot);
-          return BatchRay{offsetRay(segment, face, shifts, offset), segment.batch.x + offset};
-        };
-  }
-
-  auto borderRays(uint32_t first) const {
-    return [rays = BorderRays(scene_, std::span(entries_).subspan(first), params_)](uint32_t number) mutable {
-      return BatchRay{rays(number), number + 1};
-    };
+    return SlotRays(segment, faces_.at(segment.range.x), shifts);
   }
 
   auto reverseRays(uint32_t first) const {
-    return [this, first](uint32_t number) {
+    return [this, first, place = kNoTriangle, item = ReverseItem{}](uint32_t number) mutable {
       const uint32_t per_item = reverseRayCount(params_);
-      return BatchRay{reverseRayOf(items_[first + number / per_item], faces_, number % per_item, params_),
-                      number + 1};
+      if (place != number / per_item) {
+        place = number / per_item;
+        const uint32_t index = first + place;
+        item =
+            reverseItemOf(scene_, faces_, entries_, discontinuities_[index], items_before_ + index, params_);
+      }
+      return BatchRay{reverseRayOf(item, faces_, number % per_item, params_), number + 1};
     };
   }
 
@@ -58,7 +45,7 @@ class NaiveDevice final : public Device {
     params_ = params;
     set_.clear();
     entries_.clear();
-    items_.clear();
+    discontinuities_.clear();
     collected_ = 0;
     rays_traced_ = items_before_ = 0;
   }
@@ -69,20 +56,32 @@ class NaiveDevice final : public Device {
         [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
   }
 
-  uint32_t traceBorder(uint32_t first, uint32_t count) override {
-    items_before_ += items_.size();
-    items_.clear();
-    const uint32_t per_entry = borderRayCount(params_);
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
+    const std::vector<PvsEntry> pending = entriesFrom(first, mostBorderEntries(most_rays, params_));
+    std::vector<uint64_t> starts = borderStarts(scene_, pending, params_);
+    const uint32_t count = borderBatchEntries(starts, most_rays);
+    starts.resize(count + 1);
+    const BorderRays batch(scene_, pending, starts, params_);
+    const size_t before = discontinuities_.size();
+    uint32_t entry = 0, last_index = 0, last_occluder = 0;
     trace(
-        uint64_t(count) * per_entry, [&] { return borderRays(first); },
+        starts.back(),
+        [&] {
+          return [rays = batch](uint32_t number) mutable { return BatchRay{rays(number), number + 1}; };
+        },
         [&](const BatchRay& ray, const Hit& hit) {
           insert(hit.triangle, ray);
-          if (isDiscontinuity(ray.ray, hit, params_)) {
-            items_.push_back(
-                reverseItemOf(scene_, faces_, ray.ray, hit.triangle, items_before_ + items_.size()));
-          }
+          if (!isDiscontinuity(ray.ray, hit, params_)) return;
+          while (starts[entry + 1] < ray.index) ++entry;
+          const uint32_t samples = borderSamplesOf(scene_, pending[entry], params_);
+          const uint32_t k = batch.rayOf(ray.index - 1, entry), place = borderPlace(k, samples);
+          const bool follows = place > 0 && last_index + 1 == ray.index && last_occluder == hit.triangle;
+          last_index = ray.index;
+          last_occluder = hit.triangle;
+          if (!keepsDiscontinuity(place, follows, params_)) return;
+          discontinuities_.push_back({uvec4(first + entry, k, hit.triangle, samples)});
         });
-    return static_cast<uint32_t>(items_.size());
+    return {count, static_cast<uint32_t>(discontinuities_.size() - before)};
   }
 
   void traceReverse(uint32_t first, uint32_t count) override {
@@ -119,6 +118,11 @@ class NaiveDevice final : public Device {
     return missing;
   }
 
+  void dropDiscontinuities() override {
+    items_before_ += discontinuities_.size();
+    discontinuities_.clear();
+  }
+
   DeviceCounters counters() override { return {rays_traced_, inner_->counters().memory_bytes, true}; }
   std::vector<PvsEntry> readPvs() override { return entries_; }
 
@@ -135,6 +139,13 @@ class NaiveDevice final : public Device {
     uint32_t index = kSlotOld;
     size_t place = 0;
   };
+
+  /// Those of the list from `first`, so many at most: a copy, for hits are appended while their rays are
+  /// made.
+  std::vector<PvsEntry> entriesFrom(uint32_t first, uint32_t most) const {
+    const auto begin = entries_.begin() + first;
+    return {begin, begin + std::min<ptrdiff_t>(most, entries_.end() - begin)};
+  }
 
   void insert(uint32_t triangle, const BatchRay& ray) {
     if (triangle == kNoTriangle) return;
@@ -185,8 +196,8 @@ class NaiveDevice final : public Device {
   std::unordered_map<uint32_t, Found> set_;
   std::vector<PvsEntry> entries_;  ///< the list, and after `collected_` of them those of the open batch
   size_t collected_ = 0;
-  std::vector<ReverseItem> items_;  ///< of the last traceBorder
-  uint64_t items_before_ = 0;
+  std::vector<Discontinuity> discontinuities_;
+  uint64_t items_before_ = 0;  ///< discontinuities of the cell that were dropped
   uint64_t rays_traced_ = 0;
   std::vector<BatchRay> batch_;  ///< of a chunk
   std::vector<Ray> rays_;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 #include "core/device/opencl_context.h"
 #include "core/device/opencl_scene.h"
 #include "core/device/opencl_set.h"
 #include "core/gvs/random_segment.h"
+#include "core/gvs/stage_rays.h"
 #include "core/shared/border.h"
 #include "core/shared/gvs_border.h"
 #include "core/shared/reverse.h"
@@ -14,8 +16,9 @@
 namespace sightline {
 namespace {
 
-/// As in cl_kernels: words of ray counters, words of bits that a work item counts, items that sum them up.
-constexpr uint32_t kCounters = 256;
+/// As in cl_kernels: words of the counters, words of bits that a work item counts, items that sum them up.
+constexpr uint32_t kOverflowCounter = 0, kRayCounter = 1, kRayCounters = 256, kMissingCounter = 257,
+                   kDiscontinuityCounter = 258, kFreshCounter = 259, kCounters = 260;
 constexpr uint32_t kBlockWords = 64;
 constexpr uint32_t kSumItems = 64;
 /// Work-group size of the kernels that handle lists. Fixed: PoCL compiles a kernel anew for every size.
@@ -45,18 +48,38 @@ class OpenClDevice final : public Device {
     local_ = options.work_group_size > 0 ? options.work_group_size : std::max(1u, 64 / lanes_);
     scene_ = uploadScene(context_, scene, bvh);
     uploadRecordIndex(bvh);
-    set_ = std::make_unique<OpenClSet>(context_, triangle_count_, wantsHash(options));
-    const char* names[] = {"traceRandom",     "countMissing", "traceBorder",     "traceReverse",
-                           "countBits",       "sumBlocks",    "writeIndices",    "appendEntries",
-                           "insertContained", "copyEntries",  "traceRaysKernel", "traceViewsKernel",
-                           "traceGvsBorder"};
-    ClKernel* kernels[] = {&random_,      &missing_,      &border_,    &reverse_,   &count_,
-                           &sum_,         &write_,        &append_,    &contained_, &copy_,
-                           &rays_kernel_, &views_kernel_, &gvs_border_};
+    counters_ = context_.buffer(kCounters * 4, "counters");
+    context_.fill(counters_, 0, counters_.bytes());
+    set_ = std::make_unique<OpenClSet>(context_, counters_, triangle_count_, wantsHash(options));
+    const char* names[] = {"traceRandom",         "countMissing",        "traceBorder",
+                           "traceReverse",        "countBits",           "sumBlocks",
+                           "writeIndices",        "appendEntries",       "insertContained",
+                           "copyEntries",         "traceRaysKernel",     "traceViewsKernel",
+                           "traceGvsBorder",      "countBorderRays",     "sumBorderRays",
+                           "borderEdges",         "thinDiscontinuities", "appendDiscontinuities",
+                           "copyDiscontinuities", "reverseItems"};
+    ClKernel* kernels[] = {&random_,
+                           &missing_,
+                           &border_,
+                           &reverse_,
+                           &count_,
+                           &sum_,
+                           &write_,
+                           &append_,
+                           &contained_,
+                           &copy_,
+                           &rays_kernel_,
+                           &views_kernel_,
+                           &gvs_border_,
+                           &count_rays_,
+                           &sum_rays_,
+                           &make_edges_,
+                           &thin_,
+                           &append_discontinuities_,
+                           &copy_discontinuities_,
+                           &make_items_};
     for (size_t i = 0; i < std::size(names); ++i) *kernels[i] = context_.kernel(names[i]);
     faces_ = context_.buffer(6 * sizeof(Face), "faces of the view cell");
-    counters_ = context_.buffer((kCounters + 1) * 4, "counters");
-    context_.fill(counters_, 0, counters_.bytes());
     reserveEntries(1u << 16);
   }
 
@@ -67,7 +90,7 @@ class OpenClDevice final : public Device {
     params_ = params;
     set_->clear();
     segments_.clear();
-    size_ = discontinuities_ = 0;
+    size_ = discontinuities_ = fresh_ = 0;
     rays_ = items_before_ = 0;
   }
 
@@ -77,48 +100,57 @@ class OpenClDevice final : public Device {
     traceUntilItFits([&] { launch(random_, slots, faces_, params_, segment, counters_); });
   }
 
-  uint32_t traceBorder(uint32_t first, uint32_t count) override {
-    items_before_ += discontinuities_;
-    border_first_ = first;
-    const uint32_t total = count * borderRayCount(params_);
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
+    const uint32_t total = beginBorderBatch(first, most_rays);
     const uint32_t words = (total + 31) / 32;
     border_hits_.reserve(context_, uint64_t(total) * 4, "hits of border rays");
     bits_.reserve(context_, uint64_t(words) * 4, "bits of discontinuities");
     context_.fill(bits_.buffer, 0, uint64_t(words) * 4);
     if (isGvs(params_)) context_.fill(border_hits_.buffer, kNotTraced, uint64_t(total) * 4);
+    const ClBuffer* kept = nullptr;
     traceUntilItFits([&] {
-      if (isGvs(params_)) return launchGvsLevels(first, count);
-      launch(border_, total, record_of_, params_, entries_, first, total, border_hits_.buffer, bits_.buffer,
-             counters_);
+      if (isGvs(params_)) {
+        launchGvsLevels();
+      } else {
+        launchOverBorder(border_, total, border_hits_.buffer, bits_.buffer, counters_);
+      }
+      kept = thinDiscontinuities(words);
+      countBits(*kept, words, block_counts_, kDiscontinuityCounter);
     });
-    discontinuities_ = listBits(bits_.buffer, words, items_, "list of discontinuities");
-    return discontinuities_;
+    return {border_count_, appendDiscontinuities(*kept, words)};
   }
 
   void traceReverse(uint32_t first, uint32_t count) override {
-    reverse_first_ = first;
+    items_.reserve(context_, uint64_t(count) * sizeof(ReverseItem), "reverse samples");
+    context_.launch(make_items_, count, kListGroup, scene_.nodes, scene_.triangles, scene_.reach, record_of_,
+                    faces_, params_, entries_, discontinuity_list_.buffer, first, count, items_before_,
+                    items_.buffer);
     const uint32_t total = count * reverseRayCount(params_);
-    traceUntilItFits([&] {
-      launch(reverse_, total, record_of_, faces_, params_, entries_, border_first_, border_hits_.buffer,
-             items_.buffer, first, items_before_, total, counters_);
-    });
+    traceUntilItFits([&] { launch(reverse_, total, faces_, params_, items_.buffer, total, counters_); });
+  }
+
+  void dropDiscontinuities() override {
+    items_before_ += discontinuities_;
+    discontinuities_ = 0;
   }
 
   uint32_t collect(uint32_t stage) override {
-    const uint32_t found = listBits(set_->fresh(), set_->freshWords(), new_ids_, "list of new triangles");
+    const uint32_t found = std::exchange(fresh_, 0u);
     if (found > 0) {
+      writeIndices(set_->fresh(), set_->freshWords(), fresh_counts_, found, new_ids_,
+                   "list of new triangles");
       reserveEntries(size_ + found);
       segment_buffer_.reserve(context_, segments_.size() * sizeof(RandomSegment), "random segments");
       if (!segments_.empty()) {
         context_.write(segment_buffer_.buffer, segments_.data(), segments_.size() * sizeof(RandomSegment));
       }
-      border_hits_.reserve(context_, 4, "hits of border rays");
-      items_.reserve(context_, 4, "list of discontinuities");
-      context_.launch(append_, found, kListGroup, scene_.nodes, scene_.triangles, scene_.reach, set_->keys(),
-                      set_->winner(), set_->fresh(), set_->overflow(), set_->capacity(), record_of_, faces_,
-                      params_, entries_, size_, new_ids_.buffer, found, stage, segment_buffer_.buffer,
-                      static_cast<uint32_t>(segments_.size()), border_first_, border_hits_.buffer,
-                      items_.buffer, reverse_first_, items_before_);
+      items_.reserve(context_, 4, "reverse samples");
+      edges_.reserve(context_, 4, "border polygons");
+      starts_.reserve(context_, 4, "numbers of border rays");
+      context_.launch(append_, found, kListGroup, set_->keys(), set_->winner(), set_->fresh(),
+                      set_->overflow(), set_->capacity(), faces_, params_, entries_, size_, new_ids_.buffer,
+                      found, stage, segment_buffer_.buffer, static_cast<uint32_t>(segments_.size()), entries_,
+                      border_first_, edges_.buffer, starts_.buffer, border_count_, items_.buffer);
       size_ += found;
       set_->fit(size_);
     }
@@ -136,14 +168,14 @@ class OpenClDevice final : public Device {
     do {
       context_.launch(contained_, count, kListGroup, set_->keys(), set_->winner(), set_->fresh(),
                       set_->overflow(), set_->capacity(), entries_, size_, new_ids_.buffer, count);
-    } while (growIfFull());
+    } while (takeCounters()[kOverflowCounter] != 0 && (set_->grow(4), true));
     size_ += count;
   }
 
   uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {
     const auto slots = static_cast<uint32_t>(slotCount(segment));
     launch(missing_, slots, faces_, shifts, segment, counters_);
-    return takeCounters();
+    return takeCounters()[kMissingCounter];
   }
 
   DeviceCounters counters() override { return {rays_, context_.allocatedBytes(), set_->capacity() > 0}; }
@@ -204,54 +236,124 @@ class OpenClDevice final : public Device {
                     set_->capacity(), args...);
   }
 
+  /// The same of the batch of border rays.
+  template <typename... Args>
+  void launchOverBorder(const ClKernel& kernel, uint64_t rays, const Args&... args) {
+    launch(kernel, rays, params_, entries_, border_first_, edges_.buffer, starts_.buffer, border_count_,
+           args...);
+  }
+
   /// Border rays of the original method, level after level.
-  void launchGvsLevels(uint32_t first, uint32_t count) {
+  void launchGvsLevels() {
     for (uint32_t level = 0; level < kGvsLevels; ++level) {
-      const uint32_t slots = count * gvsSlots(level);
-      launch(gvs_border_, slots, record_of_, params_, entries_, first, level, slots, border_hits_.buffer,
-             bits_.buffer, counters_);
+      const uint32_t slots = border_count_ * gvsSlots(level);
+      launchOverBorder(gvs_border_, slots, record_of_, level, slots, border_hits_.buffer, bits_.buffer,
+                       counters_);
     }
   }
 
-  bool growIfFull() {
-    if (!set_->takeOverflow()) return false;
-    set_->grow(4);
-    return true;
+  /// Chooses the entries of a batch of border rays and makes their polygons; returns a bound of the number of
+  /// rays: where everything fits in any case, nobody waits for the sum.
+  uint32_t beginBorderBatch(uint32_t first, uint32_t most_rays) {
+    const uint32_t pending = std::min(size_ - first, mostBorderEntries(most_rays, params_));
+    const uint32_t blocks = (pending + kBorderBlock - 1) / kBorderBlock;
+    starts_.reserve(context_, (uint64_t(pending) + 1) * 4, "numbers of border rays");
+    block_counts_.reserve(context_, (uint64_t(blocks) + 1) * 4, "counts of border rays");
+    context_.launch(count_rays_, blocks, kListGroup, scene_.nodes, scene_.triangles, scene_.reach, record_of_,
+                    params_, entries_, first, pending, blocks, starts_.buffer, block_counts_.buffer);
+    context_.launch(sum_, kSumItems, kSumItems, block_counts_.buffer, blocks, counters_, 0u);
+    context_.launch(sum_rays_, blocks, kListGroup, pending, blocks, block_counts_.buffer, starts_.buffer);
+    border_first_ = first;
+    border_count_ = pending;
+    uint64_t bound = uint64_t(pending) * borderRayCount(params_.counts.x, params_);
+    if (bound > most_rays) {
+      std::vector<uint32_t> sums(blocks + 1);
+      context_.read(block_counts_.buffer, sums.data(), sums.size() * 4);
+      const auto after = std::upper_bound(sums.begin() + 1, sums.end(), most_rays);
+      const auto taken = std::max(1u, static_cast<uint32_t>(after - sums.begin() - 1));
+      border_count_ = std::min(taken * kBorderBlock, pending);
+      bound = sums[taken];
+    }
+    const uint32_t sides = border_count_ * 3;
+    edges_.reserve(context_, uint64_t(sides) * sizeof(BorderEdge), "border polygons");
+    context_.launch(make_edges_, sides, kListGroup, scene_.nodes, scene_.triangles, scene_.reach, record_of_,
+                    params_, entries_, first, sides, edges_.buffer);
+    return static_cast<uint32_t>(bound);
   }
 
-  /// Runs a stage, again with a larger set as long as it was full (insertion is idempotent), and counts the
-  /// rays of one full run.
+  /// Bits of the batch's discontinuities that get reverse rays.
+  const ClBuffer* thinDiscontinuities(uint32_t words) {
+    if (isGvs(params_) || params_.method.y == 1) return &bits_.buffer;
+    kept_bits_.reserve(context_, uint64_t(words) * 4, "bits of discontinuities");
+    context_.launch(thin_, words, kListGroup, params_, entries_, border_first_, edges_.buffer, starts_.buffer,
+                    border_count_, border_hits_.buffer, bits_.buffer, words, kept_bits_.buffer);
+    return &kept_bits_.buffer;
+  }
+
+  /// Appends the discontinuities of these bits, which were counted last; returns their number.
+  uint32_t appendDiscontinuities(const ClBuffer& bits, uint32_t words) {
+    const uint32_t found = last_counters_[kDiscontinuityCounter];
+    if (found == 0) return 0;
+    writeIndices(bits, words, block_counts_, found, indices_, "indices of discontinuities");
+    reserveDiscontinuities(uint64_t(discontinuities_) + found);
+    context_.launch(append_discontinuities_, found, kListGroup, entries_, border_first_, edges_.buffer,
+                    starts_.buffer, border_count_, border_hits_.buffer, indices_.buffer, found,
+                    discontinuity_list_.buffer, discontinuities_);
+    discontinuities_ += found;
+    return found;
+  }
+
+  /// Makes room for `count` discontinuities, at least doubling their list.
+  void reserveDiscontinuities(uint64_t count) {
+    const uint64_t bytes = discontinuity_list_.buffer.bytes();
+    if (discontinuity_list_.buffer.get() != nullptr && count * sizeof(Discontinuity) <= bytes) return;
+    Scratch larger;
+    larger.reserve(context_, std::max(count * sizeof(Discontinuity), 2 * bytes), "list of discontinuities");
+    if (discontinuities_ > 0) {
+      context_.launch(copy_discontinuities_, discontinuities_, kListGroup, discontinuity_list_.buffer,
+                      larger.buffer, discontinuities_);
+    }
+    context_.finish();
+    discontinuity_list_ = std::move(larger);
+  }
+
+  /// Runs a stage, again with a larger set as long as it was full (insertion is idempotent), and books the
+  /// rays of one full run and what is new.
   void traceUntilItFits(auto&& stage) {
-    stage();
-    while (growIfFull()) {
-      context_.fill(counters_, 0, counters_.bytes());
+    for (;;) {
       stage();
+      countBits(set_->fresh(), set_->freshWords(), fresh_counts_, kFreshCounter);
+      takeCounters();
+      if (last_counters_[kOverflowCounter] == 0) break;
+      set_->grow(4);
     }
-    takeCounters();
+    const auto rays = last_counters_.begin() + kRayCounter;
+    rays_ += std::accumulate(rays, rays + kRayCounters, uint64_t(0));
+    fresh_ = last_counters_[kFreshCounter];
   }
 
-  /// Books the rays of a launch; returns its missing rays.
-  uint64_t takeCounters() {
-    std::vector<uint32_t> counters(kCounters + 1);
-    context_.read(counters_, counters.data(), counters.size() * 4);
+  /// Waits for all launches, reads the counters and sets them back to 0.
+  const std::vector<uint32_t>& takeCounters() {
+    context_.read(counters_, last_counters_.data(), last_counters_.size() * 4);
     context_.fill(counters_, 0, counters_.bytes());
-    rays_ += std::accumulate(counters.begin(), counters.end() - 1, uint64_t(0));
-    return counters.back();
+    return last_counters_;
   }
 
-  /// Writes the indices of the set bits to `indices`, ascending, and clears the bits. Returns their number.
-  uint32_t listBits(const ClBuffer& words, uint32_t word_count, Scratch& indices, const char* what) {
+  /// Counts bits, block by block, and all of them into a word of the counters.
+  void countBits(const ClBuffer& words, uint32_t word_count, Scratch& block_counts, uint32_t place) {
     const uint32_t blocks = (word_count + kBlockWords - 1) / kBlockWords;
-    block_counts_.reserve(context_, (uint64_t(blocks) + 1) * 4, "counts of bits");
-    context_.launch(count_, blocks, kListGroup, words, word_count, blocks, block_counts_.buffer);
-    context_.launch(sum_, kSumItems, kSumItems, block_counts_.buffer, blocks);
-    uint32_t total = 0;
-    context_.read(block_counts_.buffer, &total, 4, uint64_t(blocks) * 4);
-    if (total == 0) return 0;
+    block_counts.reserve(context_, (uint64_t(blocks) + 1) * 4, "counts of bits");
+    context_.launch(count_, blocks, kListGroup, words, word_count, blocks, block_counts.buffer);
+    context_.launch(sum_, kSumItems, kSumItems, block_counts.buffer, blocks, counters_, place);
+  }
+
+  /// Writes the indices of the bits that countBits counted to `indices`, ascending, and clears the bits.
+  void writeIndices(const ClBuffer& words, uint32_t word_count, const Scratch& block_counts, uint32_t total,
+                    Scratch& indices, const char* what) {
+    const uint32_t blocks = (word_count + kBlockWords - 1) / kBlockWords;
     indices.reserve(context_, uint64_t(total) * 4, what);
-    context_.launch(write_, blocks, kListGroup, words, word_count, blocks, block_counts_.buffer,
+    context_.launch(write_, blocks, kListGroup, words, word_count, blocks, block_counts.buffer,
                     indices.buffer);
-    return total;
   }
 
   /// Makes room for `count` entries of the list, at least doubling it.
@@ -273,17 +375,21 @@ class OpenClDevice final : public Device {
   OpenClScene scene_;
   ClBuffer record_of_, faces_, counters_, entries_;
   ClKernel random_, missing_, border_, reverse_, count_, sum_, write_, append_, contained_, copy_,
-      rays_kernel_, views_kernel_, gvs_border_;
+      rays_kernel_, views_kernel_, gvs_border_, count_rays_, sum_rays_, make_edges_, thin_,
+      append_discontinuities_, copy_discontinuities_, make_items_;
   std::unique_ptr<OpenClSet> set_;
   StageParams params_{};
   std::vector<RandomSegment> segments_;  ///< of the batch
-  Scratch segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_, views_, view_triangles_;
+  Scratch segment_buffer_, starts_, edges_, border_hits_, bits_, kept_bits_, indices_, discontinuity_list_,
+      items_, new_ids_, block_counts_, fresh_counts_, views_, view_triangles_;
   uint32_t entry_capacity_ = 0;
   uint32_t size_ = 0;             ///< entries of the list
-  uint32_t border_first_ = 0;     ///< entry of the first border ray
-  uint32_t discontinuities_ = 0;  ///< of the last traceBorder
-  uint64_t items_before_ = 0;     ///< discontinuities of the cell before those
-  uint32_t reverse_first_ = 0;
+  uint32_t border_first_ = 0;     ///< first entry of the batch of border rays
+  uint32_t border_count_ = 0;     ///< its entries
+  uint32_t discontinuities_ = 0;  ///< in their list
+  uint64_t items_before_ = 0;     ///< those of the cell that were dropped
+  std::vector<uint32_t> last_counters_ = std::vector<uint32_t>(kCounters);
+  uint32_t fresh_ = 0;  ///< new triangles of the batch
   uint64_t rays_ = 0;
 };
 

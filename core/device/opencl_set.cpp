@@ -11,13 +11,13 @@ constexpr uint32_t kLargestCapacity = 1u << 31;
 
 }  // namespace
 
-OpenClSet::OpenClSet(OpenClContext& context, uint32_t triangle_count, bool hash)
+OpenClSet::OpenClSet(OpenClContext& context, const ClBuffer& overflow, uint32_t triangle_count, bool hash)
     : context_(context),
       rehash_(context.kernel("rehash")),
       fresh_words_((triangle_count + 31) / 32),
       slots_(triangle_count),
-      fresh_(context.buffer(uint64_t(fresh_words_) * 4, "bits of new triangles")),
-      overflow_(context.buffer(4, "set's overflow flag")) {
+      overflow_(overflow),
+      fresh_(context.buffer(uint64_t(fresh_words_) * 4, "bits of new triangles")) {
   if (hash) {
     allocate(kFirstHashCapacity);
   } else {
@@ -37,7 +37,6 @@ void OpenClSet::clear() {
   if (capacity_ > 0) context_.fill(keys_, kNoTriangle, uint64_t(slots_) * 4);
   context_.fill(winner_, kSlotEmpty, uint64_t(slots_) * 4);
   context_.fill(fresh_, 0, uint64_t(fresh_words_) * 4);
-  context_.fill(overflow_, 0, 4);
 }
 
 bool OpenClSet::takeOverflow() {

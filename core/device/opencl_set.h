@@ -9,7 +9,8 @@ namespace sightline {
 /// with SL_SET_ARGS take keys(), winner(), fresh(), overflow() and capacity().
 class OpenClSet {
  public:
-  OpenClSet(OpenClContext& context, uint32_t triangle_count, bool hash);
+  /// overflow: a buffer whose first word is raised where a launch found no room.
+  OpenClSet(OpenClContext& context, const ClBuffer& overflow, uint32_t triangle_count, bool hash);
 
   const ClBuffer& keys() const { return keys_; }
   const ClBuffer& winner() const { return winner_; }
@@ -20,8 +21,6 @@ class OpenClSet {
 
   /// Empties the set; keeps its capacity.
   void clear();
-  /// Whether a launch found no room; lowers the flag.
-  bool takeOverflow();
   /// Makes the hash set `factor` times as large, keeping its contents.
   void grow(uint32_t factor);
   /// Doubles the hash set until `size` triangles fill at most half of it.
@@ -29,13 +28,16 @@ class OpenClSet {
 
  private:
   void allocate(uint32_t capacity);
+  /// Whether a launch found no room; lowers the flag.
+  bool takeOverflow();
 
   OpenClContext& context_;
   ClKernel rehash_;
   uint32_t fresh_words_;
   uint32_t capacity_ = 0;
   uint32_t slots_;
-  ClBuffer keys_, winner_, fresh_, overflow_;
+  const ClBuffer& overflow_;
+  ClBuffer keys_, winner_, fresh_;
 };
 
 }  // namespace sightline

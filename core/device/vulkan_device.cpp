@@ -8,6 +8,7 @@
 #include "core/device/vulkan_scene.h"
 #include "core/device/vulkan_set.h"
 #include "core/gvs/random_segment.h"
+#include "core/gvs/stage_rays.h"
 #include "core/shared/border.h"
 #include "core/shared/gvs_border.h"
 #include "core/shared/hemicube.h"
@@ -38,7 +39,11 @@ class VulkanDevice final : public Device {
     count_ = VulkanStage::list(context_, "count_bits");
     sum_ = VulkanStage::list(context_, "sum_blocks");
     write_ = VulkanStage::list(context_, "write_indices");
+    count_rays_ = VulkanStage::list(context_, "count_border_rays");
+    sum_rays_ = VulkanStage::list(context_, "sum_border_rays");
     edges_ = VulkanStage::list(context_, "border_edges");
+    thin_ = VulkanStage::list(context_, "thin_discontinuities");
+    append_discontinuities_ = VulkanStage::list(context_, "append_discontinuities");
     reverse_list_ = VulkanStage::list(context_, "reverse_items");
     append_ = VulkanStage::list(context_, "append_entries");
     contained_ = VulkanStage::list(context_, "insert_contained");
@@ -63,7 +68,8 @@ class VulkanDevice final : public Device {
     set_.clear();
     segments_.clear();
     hemicubes_.clear();
-    size_ = discontinuities_ = 0;
+    launch_.waiting = 0;
+    size_ = 0;
     rays_ = 0;
   }
 
@@ -75,23 +81,32 @@ class VulkanDevice final : public Device {
     traceUntilItFits([&] { runner_.run(tracing(random_, "trace_random"), slots); });
   }
 
-  uint32_t traceBorder(uint32_t first, uint32_t count) override {
-    launch_.items_before += discontinuities_;
-    launch_.border_first = first;
-    const uint32_t total = count * borderRayCount(launch_.params);
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
+    const uint32_t total = beginBorderBatch(first, most_rays);
     const uint32_t words = (total + 31) / 32;
+    const bool thin = !isGvs(launch_.params) && launch_.params.method.y > 1;
     reserve(border_hits_, launch_.border_hits, uint64_t(total) * 4, "hits of border rays");
-    reserve(border_edges_, launch_.border_edges, uint64_t(count) * 3 * sizeof(BorderEdge), "border polygons");
     reserve(bits_, launch_.bits, uint64_t(words) * 4, "bits of discontinuities");
+    if (thin) reserve(kept_bits_, launch_.kept_bits, uint64_t(words) * 4, "bits of discontinuities");
     runner_.commands.fill(bits_, 0, uint64_t(words) * 4);
-    runner_.run(edges_, count * 3);
     if (isGvs(launch_.params)) runner_.commands.fill(border_hits_, kNotTraced, uint64_t(total) * 4);
-    discontinuities_ = traceUntilItFits([&] {
-      traceBorderRays(count, total);
-      countBits(bits_, words);
+    const uint32_t found = traceUntilItFits([&] {
+      traceBorderRays(launch_.border_count, total);
+      if (thin) runner_.run(thin_, words);
+      countBits(thin ? kept_bits_ : bits_, words);
     });
-    writeIndices(discontinuities_, items_, launch_.discontinuities, "list of discontinuities");
-    return discontinuities_;
+    if (found > 0) {
+      writeIndices(found, indices_, launch_.indices, "indices of discontinuities");
+      reserveDiscontinuities(uint64_t(launch_.waiting) + found);
+      runner_.run(append_discontinuities_, found);
+      launch_.waiting += found;
+    }
+    return {launch_.border_count, found};
+  }
+
+  void dropDiscontinuities() override {
+    launch_.items_before += launch_.waiting;
+    launch_.waiting = 0;
   }
 
   void traceReverse(uint32_t first, uint32_t count) override {
@@ -229,6 +244,44 @@ class VulkanDevice final : public Device {
     }
   }
 
+  /// Chooses the entries of a batch of border rays and makes their polygons; returns the number of rays.
+  uint32_t beginBorderBatch(uint32_t first, uint32_t most_rays) {
+    const uint32_t pending = std::min(size_ - first, mostBorderEntries(most_rays, launch_.params));
+    const uint32_t blocks = (pending + kBorderBlock - 1) / kBorderBlock;
+    launch_.border_first = first;
+    launch_.border_count = pending;
+    launch_.block_count = blocks;
+    reserve(border_starts_, launch_.border_starts, uint64_t(pending) * 4, "numbers of border rays");
+    reserve(block_counts_, launch_.block_counts, uint64_t(blocks) * 4, "counts of border rays");
+    runner_.run(count_rays_, blocks);
+    runner_.run(sum_, kSumItems);
+    runner_.run(sum_rays_, blocks);
+    const uint32_t all = runner_.takeCounts().listed;
+    std::vector<uint32_t> sums(blocks + 1, all);
+    if (all > most_rays) read(block_counts_, sums.data(), uint64_t(blocks) * 4);
+    const auto after = std::upper_bound(sums.begin() + 1, sums.end(), most_rays);
+    const auto taken =
+        all > most_rays ? std::max(1u, static_cast<uint32_t>(after - sums.begin() - 1)) : blocks;
+    launch_.border_count = std::min(taken * kBorderBlock, pending);
+    const uint32_t sides = launch_.border_count * 3;
+    reserve(border_edges_, launch_.border_edges, uint64_t(sides) * sizeof(BorderEdge), "border polygons");
+    runner_.run(edges_, sides);
+    return sums[taken];
+  }
+
+  /// Makes room for `count` discontinuities that wait, at least doubling their list.
+  void reserveDiscontinuities(uint64_t count) {
+    if (waiting_.get() != VK_NULL_HANDLE && count * sizeof(Discontinuity) <= waiting_.bytes()) return;
+    VulkanBuffer larger = context_.buffer(std::max(count * sizeof(Discontinuity), 2 * waiting_.bytes()),
+                                          "list of discontinuities");
+    if (launch_.waiting > 0) {
+      runner_.commands.copy(waiting_, larger, uint64_t(launch_.waiting) * sizeof(Discontinuity));
+    }
+    runner_.commands.finish();
+    waiting_ = std::move(larger);
+    launch_.discontinuities = waiting_.address();
+  }
+
   /// All border rays of `count` entries; of the original method level after level.
   void traceBorderRays(uint32_t count, uint32_t total) {
     if (!isGvs(launch_.params)) return runner_.run(tracing(border_, "trace_border"), total);
@@ -314,18 +367,18 @@ class VulkanDevice final : public Device {
   uint32_t triangle_count_;
   VulkanScene scene_;
   VulkanSet set_;
-  VulkanBuffer faces_, entries_, segment_buffer_, border_hits_, bits_, items_, new_ids_, block_counts_,
-      border_edges_, reverse_items_, rays_buffer_, hits_buffer_, views_, view_triangles_, hemicube_,
-      hemicube_batch_, readback_;
+  VulkanBuffer faces_, entries_, segment_buffer_, border_starts_, border_edges_, border_hits_, bits_,
+      kept_bits_, indices_, waiting_, new_ids_, block_counts_, reverse_items_, rays_buffer_, hits_buffer_,
+      views_, view_triangles_, hemicube_, hemicube_batch_, readback_;
   std::optional<VulkanUpload> upload_;
-  VulkanStage count_, sum_, write_, edges_, reverse_list_, append_, contained_, pixels_;
+  VulkanStage count_, sum_, write_, count_rays_, sum_rays_, edges_, thin_, append_discontinuities_,
+      reverse_list_, append_, contained_, pixels_;
   std::optional<VulkanStage> random_, missing_, border_, reverse_, rays_stage_, views_stage_, gvs_border_;
   std::optional<VulkanRaster> raster_;   ///< made when it is first needed
   std::vector<RandomSegment> segments_;  ///< of the batch
   std::vector<ViewFrame> hemicubes_;     ///< of the batch, five views each
   uint32_t entry_capacity_ = 0;
-  uint32_t size_ = 0;             ///< entries of the list
-  uint32_t discontinuities_ = 0;  ///< of the last traceBorder
+  uint32_t size_ = 0;  ///< entries of the list
   uint64_t rays_ = 0;
 };
 

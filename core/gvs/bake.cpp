@@ -64,6 +64,9 @@ std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile&
   compare(differences, "seed", a.seed, b.seed);
   compare(differences, "raster_resolution", a.raster_resolution, b.raster_resolution);
   compare(differences, "target_error", a.target_error, b.target_error);
+  compare(differences, "abs_spacing", a.abs_spacing, b.abs_spacing);
+  compare(differences, "reverse_stride", a.reverse_stride, b.reverse_stride);
+  compare(differences, "order", orderName(a.order), orderName(b.order));
   compare(differences, "witnesses", earlier.has_witnesses, wanted.has_witnesses);
   if (differences.empty() && a != b) differences.push_back("parameters");  // one that this list lacks
   return differences;

@@ -8,8 +8,10 @@
 
 #include "core/error.h"
 #include "core/gvs/error_bound.h"
+#include "core/gvs/exploration_yield.h"
 #include "core/gvs/face_rays.h"
 #include "core/gvs/hemicube.h"
+#include "core/gvs/make_stage_params.h"
 #include "core/gvs/random_segment.h"
 #include "core/scene/contained.h"
 #include "core/shared/border.h"
@@ -25,8 +27,8 @@ constexpr uint32_t kRandomLaunchRays = 1u << 22;
 /// all rays at most. Those that fail soon, while the error is large, hold up nothing.
 constexpr uint64_t kRaysBetweenTests = 4;
 
-/// No border batch yet.
-constexpr uint32_t kNoBatch = 0xffffffffu;
+/// So many discontinuities may wait for their reverse rays (512 MiB on the device) before these go first.
+constexpr uint32_t kMostWaiting = 1u << 25;
 
 /// One cell's bake in progress.
 class CellBake {
@@ -38,12 +40,10 @@ class CellBake {
         faces_(std::move(faces)),
         cell_index_(cell_index),
         hooks_(hooks),
-        face_rays_(raysByArea(faces_, params.n_rand)) {
-    stage_params_.counts = uvec4(params.n_abs_edge, params.n_rs_edge, params.n_rs_area, faces_.size());
-    stage_params_.shifts = haltonShifts(params.seed, cell_index, RandomUse::kSampling);
-    stage_params_.distances =
-        vec4(params.delta_abs_relative, params.delta_abs, params.delta_rs_relative, params.delta_rs);
-    stage_params_.method.x = params.method == Method::kGvs ? kSampleGvs : kSampleGvspp;
+        face_rays_(raysByArea(faces_, params.n_rand)),
+        yield_(params.batch_rays) {
+    stage_params_ =
+        makeStageParams(params, faces_.size(), haltonShifts(params.seed, cell_index, RandomUse::kSampling));
     if (params.method == Method::kRaster) near_distance_ = hemicubeNear(scene, faces_);
     device_.beginCell(faces_, stage_params_);
   }
@@ -82,7 +82,7 @@ class CellBake {
     device_.insertContained(unseen);
     stats_.contained_triangles = unseen.size();
     pvs_size_ += static_cast<uint32_t>(unseen.size());
-    explored_ = bordered_ = pvs_size_;
+    bordered_ = pvs_size_;
   }
 
   /// Fresh random rays of other shifts; counts those that hit something outside the set.
@@ -114,7 +114,7 @@ class CellBake {
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
-  /// Whether new triangles are explored, or random rays are all there is.
+  /// Whether new triangles are explored.
   bool explores() const { return params_.method != Method::kRandom && params_.method != Method::kRaster; }
 
   /// One iteration's samples before any exploration. false: a limit was reached.
@@ -166,7 +166,7 @@ class CellBake {
     });
     next_point_ += params_.n_rand;
     close(kStageRandom, stats_.random, start);
-    if (!explores()) explored_ = bordered_ = pvs_size_;
+    if (!explores()) bordered_ = pvs_size_;
     return more;
   }
 
@@ -183,62 +183,86 @@ class CellBake {
       more = finishLaunch(kStageRandom, stats_.random);
     }
     close(kStageRandom, stats_.random, start);
-    explored_ = bordered_ = pvs_size_;
+    bordered_ = pvs_size_;
     return more;
   }
 
-  /// Border and reverse rays until no unexplored triangle is left. false: a limit was reached.
-  ///
-  /// A border ray finds twenty to fifty times as many triangles as a reverse ray (docs/evaluation.md), so
-  /// those of all triangles go first: a bake that a limit ends has found most by then. For the reverse rays
-  /// of a batch its border rays are traced once more, unless they were the last. Of gvs, reverse rays are
-  /// few, and go along.
+  /// Border and reverse rays of what is new. false: a limit was reached.
   bool explore() {
-    while (explored_ < pvs_size_) {
-      if (params_.method != Method::kGvs) {
-        while (bordered_ < pvs_size_) {
-          if (!border(bordered_)) return false;
-        }
+    const bool queue = params_.order == Order::kQueue || params_.method == Method::kGvs;
+    return queue ? exploreQueue() : exploreByYield();
+  }
+
+  /// As the thesis does: reverse rays of a batch of triangles follow its border rays, until no unexplored
+  /// triangle is left.
+  bool exploreQueue() {
+    while (bordered_ < pvs_size_) {
+      if (!border()) return false;
+      while (waiting() > 0) {
+        if (!reverse()) return false;
       }
-      if (batch_first_ != explored_ && !border(explored_)) return false;
-      in_work_ = batch_count_;
-      if (!reverse(batch_discontinuities_)) return false;
-      explored_ += batch_count_;
-      in_work_ = 0;
     }
     return true;
   }
 
-  /// Border rays of the entries from `first`, as many as a batch holds; remembers the batch. false: a limit
-  /// was reached.
-  bool border(uint32_t first) {
+  /// Goes on with what promises the most triangles a ray, border or reverse rays, as long as that is more
+  /// than the random rays of this iteration found; the rest waits for a later one. But border rays may always
+  /// catch up with random rays, for a batch is no fair sample of all that wait, and an iteration that has
+  /// found fewer than T triangles leaves nothing.
+  bool exploreByYield() {
+    const double random_yield = double(iteration_new_) / params_.n_rand;
+    while (bordered_ < pvs_size_ || waiting() > 0) {
+      const uint32_t entries = pvs_size_ - bordered_;
+      const bool catching_up = entries > 0 && stats_.border.rays < stats_.random.rays;
+      const double border_yield = entries > 0 ? yield_.border(entries) : -1;
+      const double reverse_yield = waiting() > 0 ? yield_.reverse() : -1;
+      const bool may_wait = iteration_new_ >= params_.threshold && !catching_up;
+      if (may_wait && std::max(border_yield, reverse_yield) < random_yield) return true;
+      const bool to_border = (catching_up || border_yield >= reverse_yield) && waiting() < kMostWaiting;
+      if (!(to_border ? border() : reverse())) return false;
+    }
+    return true;
+  }
+
+  /// Discontinuities whose reverse rays are still to be traced.
+  uint32_t waiting() const { return discontinuities_ - reversed_; }
+
+  /// A batch of border rays. false: a limit was reached.
+  bool border() {
     const auto start = Clock::now();
-    const uint32_t entries_per_batch = std::max(1u, params_.batch_rays / borderRayCount(stage_params_));
-    batch_first_ = first;
-    batch_count_ = std::min(entries_per_batch, pvs_size_ - first);
-    batch_discontinuities_ = device_.traceBorder(first, batch_count_);
+    const BorderBatch batch = device_.traceBorder(bordered_, params_.batch_rays);
+    bordered_ += batch.entries;
+    if (reverseRayCount(stage_params_) == 0) {
+      device_.dropDiscontinuities();
+    } else {
+      discontinuities_ += batch.discontinuities;
+      discontinuities_total_ += batch.discontinuities;
+    }
+    const uint64_t rays = rays_;
+    const uint32_t found = pvs_size_;
     const bool more = finishLaunch(kStageBorder, stats_.border);
     close(kStageBorder, stats_.border, start);
-    bordered_ = std::max(bordered_, first + batch_count_);
+    yield_.bookBorder(batch.entries, rays_ - rays, pvs_size_ - found);
     return more;
   }
 
-  bool reverse(uint32_t discontinuities) {
-    const uint32_t per_item = reverseRayCount(stage_params_);
-    if (per_item == 0) return true;
-    reverse_left_ = uint64_t(discontinuities) * per_item;
-    const uint32_t items_per_batch = std::max(1u, params_.batch_rays / per_item);
-    for (uint32_t item = 0; item < discontinuities;) {
-      const auto start = Clock::now();
-      const uint32_t count = std::min(items_per_batch, discontinuities - item);
-      device_.traceReverse(item, count);
-      reverse_left_ -= uint64_t(count) * per_item;
-      const bool more = finishLaunch(kStageReverse, stats_.reverse);
-      close(kStageReverse, stats_.reverse, start);
-      if (!more) return false;
-      item += count;
+  /// A batch of reverse rays of those that wait. false: a limit was reached.
+  bool reverse() {
+    const auto start = Clock::now();
+    const uint32_t items_per_batch = std::max(1u, params_.batch_rays / reverseRayCount(stage_params_));
+    const uint32_t count = std::min(items_per_batch, waiting());
+    device_.traceReverse(reversed_, count);
+    reversed_ += count;
+    const uint64_t rays = rays_;
+    const uint32_t found = pvs_size_;
+    const bool more = finishLaunch(kStageReverse, stats_.reverse);
+    close(kStageReverse, stats_.reverse, start);
+    yield_.bookReverse(rays_ - rays, pvs_size_ - found);
+    if (waiting() == 0) {
+      device_.dropDiscontinuities();
+      discontinuities_ = reversed_ = 0;
     }
-    return true;
+    return more;
   }
 
   /// Books the rays of a launch. false: a limit was reached.
@@ -282,7 +306,7 @@ class CellBake {
     p.rays = rays_ + stats_.validation_rays + stats_.bound_rays;
     p.pvs_size = pvs_size_;
     p.new_triangles = iteration_new_;
-    p.queued = pvs_size_ - explored_;
+    p.queued = pvs_size_ - bordered_;
     p.seconds = seconds();
     // Before the first border rays nobody knows how much there is to explore.
     const bool known = !explores() || stats_.border.rays > 0 || stats_.iterations > 1 || validating_;
@@ -293,11 +317,12 @@ class CellBake {
   /// Estimate of the rays until the cell is done, if the queue grows no further and this iteration is the
   /// last.
   double raysDue() const {
-    const uint32_t taken_up = explored_ + in_work_;
-    const double border_each = double(borderRayCount(stage_params_));
-    const double reverse_each = taken_up == 0 ? 0 : double(stats_.reverse.rays + reverse_left_) / taken_up;
-    return double(random_left_) + double(reverse_left_) + double(pvs_size_ - bordered_) * border_each +
-           double(pvs_size_ - taken_up) * (border_each + reverse_each) +
+    const double reverse_each = double(reverseRayCount(stage_params_));
+    const double explored = std::max(1.0, double(bordered_));
+    const double border_each = double(stats_.border.rays) / explored;
+    const double waiting_each = double(discontinuities_total_) / explored;
+    return double(random_left_) + double(waiting()) * reverse_each +
+           double(pvs_size_ - bordered_) * (border_each + waiting_each * reverse_each) +
            double(params_.validation_rays - stats_.validation_rays);
   }
 
@@ -315,12 +340,11 @@ class CellBake {
   uint64_t rays_ = 0;
   uint32_t random_left_ = 0;  ///< random rays of this iteration still to trace
   uint32_t pvs_size_ = 0;
-  uint32_t explored_ = 0;  ///< entries of the list that need no more exploration
-  uint32_t in_work_ = 0;   ///< entries after them whose reverse rays are being traced
-  uint32_t bordered_ = 0;  ///< entries whose border rays have been traced
-  uint32_t batch_first_ = kNoBatch, batch_count_ = 0;  ///< entries of the last border batch ...
-  uint32_t batch_discontinuities_ = 0;                 ///< ... and how many discontinuities it met
-  uint64_t reverse_left_ = 0;                          ///< reverse rays of these still to trace
+  uint32_t bordered_ = 0;               ///< entries of the list whose border rays have been traced
+  uint32_t discontinuities_ = 0;        ///< that the device has listed ...
+  uint32_t reversed_ = 0;               ///< ... and whose reverse rays have been traced
+  uint64_t discontinuities_total_ = 0;  ///< of the cell
+  ExplorationYield yield_;
   uint32_t iteration_new_ = 0;
   uint64_t next_test_ = 0;  ///< rays traced when the error is next tested against the target
   bool validating_ = false;
@@ -346,36 +370,6 @@ void fillSet(const std::vector<PvsEntry>& entries, CellPvs& pvs) {
 }
 
 }  // namespace
-
-void checkParams(const BakeParams& p) {
-  const auto require = [](bool good, const char* line) {
-    if (!good) throw Error(line, kExitUsage);
-  };
-  require(p.method <= Method::kNaive, "no such method");
-  require(p.raster_resolution >= 16 && p.raster_resolution <= kMaxViewResolution,
-          "raster-resolution must be 16 .. 16384");
-  require(p.target_error == 0 || (p.target_error >= kSmallestTargetError && p.target_error < 1),
-          "target-error must be 0 (off) or 1e-10 .. 1");
-  require(p.n_rand >= 1 && p.n_rand <= 0xfffffffdu, "n-rand must be 1 .. 4294967293");
-  require(p.n_abs_edge <= 1000, "n-abs-edge must be 0 .. 1000");
-  require(p.n_rs_edge <= 1000, "n-rs-edge must be 0 .. 1000");
-  require(p.n_rs_area <= 100'000, "n-rs-area must be 0 .. 100000");
-  require(p.batch_rays >= 4096 && p.batch_rays <= 1u << 28, "batch-rays must be 4096 .. 268435456");
-  require(p.quiet_iterations >= 1, "quiet-iterations must be at least 1");
-  require(p.threshold >= 1 || p.max_rays > 0 || p.max_seconds > 0 || p.target_error > 0,
-          "threshold 0 never ends: give max-rays, max-seconds or target-error too");
-  const auto distance = [](float x) { return std::isfinite(x) && x >= 0; };
-  require(distance(p.delta_abs) && distance(p.delta_abs_relative) && p.delta_abs + p.delta_abs_relative > 0,
-          "delta-abs and delta-abs-relative must be finite, not negative, and one of them above 0");
-  require(distance(p.delta_rs) && distance(p.delta_rs_relative),
-          "delta-rs and delta-rs-relative must be finite and not negative");
-  require(std::isfinite(p.max_seconds) && p.max_seconds >= 0, "max-seconds must be finite and not negative");
-}
-
-void requireMethodOn(Method method, const std::string& device) {
-  if (method != Method::kRaster || device.starts_with("vulkan")) return;
-  throw Error("the method raster draws by Vulkan: use --device vulkan, not " + device, kExitUsage);
-}
 
 CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
                  const BakeParams& params, const BakeHooks& hooks) {

@@ -1,15 +1,44 @@
 #pragma once
+#include <algorithm>
 #include <span>
+#include <vector>
 
 #include "core/scene/scene.h"
-#include "core/shared/border.h"
+#include "core/shared/gvs_border.h"
 #include "core/shared/gvs_reverse.h"
+#include "core/shared/random_ray.h"
 #include "core/shared/reverse.h"
 #include "core/shared/types.h"
 
-// The rays of border and reverse sampling on the host: for the cpu device and for whoever wants to trace the
-// rays of a bake by other means.
+// The rays of the sampling stages on the host: for the cpu device and for whoever wants to trace the rays of
+// a bake by other means.
 namespace sightline {
+
+/// A ray with its index (1 ..) in a batch.
+struct BatchRay {
+  Ray ray;
+  uint32_t index;
+};
+
+/// The random rays of a segment on one face by slot; without direction where the slot has none. Call it with
+/// ascending slots.
+class SlotRays {
+ public:
+  SlotRays(const RandomSegment& segment, const Face& face, uvec4 shifts)
+      : segment_(&segment), face_(face), shifts_(shifts), walk_(startSlotWalk()) {}
+
+  BatchRay operator()(uint32_t slot) {
+    walk_ = walkToSlot(walk_, *segment_, slot);
+    const uint32_t offset = walkOffset(walk_, *segment_, slot);
+    return {offsetRay(*segment_, face_, shifts_, offset), segment_->batch.x + offset};
+  }
+
+ private:
+  const RandomSegment* segment_;
+  Face face_;
+  uvec4 shifts_;
+  SlotWalk walk_;
+};
 
 inline vec3 cornerOf(const Scene& scene, uint32_t triangle, int corner) {
   return scene.positions[scene.triangles[triangle][corner]];
@@ -27,6 +56,13 @@ inline Ray entryRay(const PvsEntry& entry) {
           vec4(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z), 0)};
 }
 
+/// Samples between the ends of each long edge of the border polygon of an entry's triangle.
+inline uint32_t borderSamplesOf(const Scene& scene, const PvsEntry& entry, const StageParams& params) {
+  const uint32_t triangle = entry.origin_triangle.w;
+  return borderSamples(cornerOf(scene, triangle, 0), cornerOf(scene, triangle, 1),
+                       cornerOf(scene, triangle, 2), entryOrigin(entry), params);
+}
+
 /// Side 0, 1 or 2 of the border polygon of an entry's triangle, seen from where the entry's ray began.
 inline BorderEdge borderEdgeOf(const Scene& scene, const PvsEntry& entry, uint32_t side,
                                const StageParams& params) {
@@ -35,38 +71,91 @@ inline BorderEdge borderEdgeOf(const Scene& scene, const PvsEntry& entry, uint32
                     side, entryOrigin(entry), params);
 }
 
-/// The border rays of entries by number: borderRayCount rays each. Remembers the last polygon, so call it
-/// with ascending numbers.
+/// Border ray k of an entry. samples: borderSamplesOf.
+inline Ray borderRayOf(const Scene& scene, const PvsEntry& entry, uint32_t k, uint32_t samples,
+                       const StageParams& params) {
+  const vec3 origin = entryOrigin(entry);
+  const auto side = [&](uint32_t s) { return borderEdgeOf(scene, entry, s, params); };
+  if (!isGvs(params)) return borderRay(side(borderSide(k, samples)), k, origin);
+  const uint32_t first = gvsFirstVertex(k), second = gvsSecondVertex(k);
+  return rayTo(origin,
+               gvsPoint(gvsVertexOf(side(first / 3), first), gvsVertexOf(side(second / 3), second), k));
+}
+
+/// How many border rays the entries have before each of them, and one number more: in all.
+inline std::vector<uint64_t> borderStarts(const Scene& scene, std::span<const PvsEntry> entries,
+                                          const StageParams& params) {
+  std::vector<uint64_t> starts{0};
+  starts.reserve(entries.size() + 1);
+  for (const PvsEntry& entry : entries) {
+    starts.push_back(starts.back() + borderRayCount(borderSamplesOf(scene, entry, params), params));
+  }
+  return starts;
+}
+
+/// So many entries a batch of border rays looks at: more than it can take, but not the whole list. Their rays
+/// can be counted in 32 bits.
+inline uint32_t mostBorderEntries(uint32_t most_rays, const StageParams& params) {
+  const uint32_t fewest = borderRayCount(std::min(kFewestBorderSamples, params.counts.x), params);
+  const uint32_t countable = ~0u / borderRayCount(params.counts.x, params) / kBorderBlock * kBorderBlock;
+  return std::min(most_rays / fewest / kBorderBlock * kBorderBlock + kBorderBlock, countable);
+}
+
+/// How many of the entries a batch of most_rays takes: whole blocks of kBorderBlock, one at least. starts: of
+/// borderStarts, for all that there are.
+inline uint32_t borderBatchEntries(std::span<const uint64_t> starts, uint32_t most_rays) {
+  const auto count = static_cast<uint32_t>(starts.size() - 1);
+  uint32_t entries = std::min(kBorderBlock, count);
+  while (entries < count && starts[std::min(entries + kBorderBlock, count)] <= most_rays) {
+    entries = std::min(entries + kBorderBlock, count);
+  }
+  return entries;
+}
+
+/// The border rays of entries by number. Remembers the last polygon, so call it with ascending numbers.
 class BorderRays {
  public:
-  BorderRays(const Scene& scene, std::span<const PvsEntry> entries, const StageParams& params)
-      : scene_(&scene), entries_(entries), params_(&params) {}
+  /// starts: borderStarts of the entries.
+  BorderRays(const Scene& scene, std::span<const PvsEntry> entries, std::span<const uint64_t> starts,
+             const StageParams& params)
+      : scene_(&scene), entries_(entries), starts_(starts), params_(&params) {}
+
+  /// Which entry's border ray it is.
+  uint32_t entryOf(uint32_t number) const {
+    return uint32_t(std::upper_bound(starts_.begin(), starts_.end(), number) - starts_.begin() - 1);
+  }
+  /// Which ray of its entry's polygon.
+  uint32_t rayOf(uint32_t number, uint32_t entry) const { return uint32_t(number - starts_[entry]); }
 
   Ray operator()(uint32_t number) {
-    const uint32_t per_entry = borderRayCount(*params_);
-    const uint32_t entry = number / per_entry, k = number % per_entry;
-    const vec3 origin = entryOrigin(entries_[entry]);
+    if (made_ == 0 || number < starts_[entry_] || number >= starts_[entry_ + 1]) {
+      entry_ = entryOf(number);
+      samples_ = borderSamplesOf(*scene_, entries_[entry_], *params_);
+      made_ = 0;
+    }
+    const uint32_t k = rayOf(number, entry_);
+    const vec3 origin = entryOrigin(entries_[entry_]);
     if (isGvs(*params_)) {
       const uint32_t first = gvsFirstVertex(k), second = gvsSecondVertex(k);
-      const vec3 from = gvsVertexOf(side(entry, first / 3), first);
-      return rayTo(origin, gvsPoint(from, gvsVertexOf(side(entry, second / 3), second), k));
+      const vec3 from = gvsVertexOf(side(first / 3), first);
+      return rayTo(origin, gvsPoint(from, gvsVertexOf(side(second / 3), second), k));
     }
-    return borderRay(side(entry, borderSide(k, *params_)), k, origin, *params_);
+    return borderRay(side(borderSide(k, samples_)), k, origin);
   }
 
  private:
-  const BorderEdge& side(uint32_t entry, uint32_t side) {
-    if (entry_ != entry) made_ = 0;
-    entry_ = entry;
-    if ((made_ >> side & 1) == 0) sides_[side] = borderEdgeOf(*scene_, entries_[entry], side, *params_);
+  const BorderEdge& side(uint32_t side) {
+    if ((made_ >> side & 1) == 0) sides_[side] = borderEdgeOf(*scene_, entries_[entry_], side, *params_);
     made_ |= 1u << side;
     return sides_[side];
   }
 
   const Scene* scene_;
   std::span<const PvsEntry> entries_;
+  std::span<const uint64_t> starts_;
   const StageParams* params_;
-  uint32_t entry_ = 0, made_ = 0;  ///< whose sides there are, a bit each
+  uint32_t entry_ = 0, samples_ = 0;
+  uint32_t made_ = 0;  ///< which sides of the entry's polygon there are, a bit each
   BorderEdge sides_[3];
 };
 
@@ -79,7 +168,7 @@ inline bool isDiscontinuityOf(const Scene& scene, const PvsEntry& entry, const R
                             params);
 }
 
-/// The discontinuity that a border ray met. occluder: the triangle that it hit, or kNoTriangle; number: its
+/// The item of a discontinuity of gvs++ for its reverse rays. border: the ray that met it; number: its
 /// running number in the cell.
 inline ReverseItem reverseItemOf(const Scene& scene, std::span<const Face> faces, const Ray& border,
                                  uint32_t occluder, uint64_t number) {
@@ -98,11 +187,14 @@ inline ReverseItem reverseItemOf(const Scene& scene, std::span<const Face> faces
   return item;
 }
 
-/// The same by the method of the parameters. entry: whose border ray it was.
-inline ReverseItem reverseItemOf(const Scene& scene, std::span<const Face> faces, const PvsEntry& entry,
-                                 const Ray& border, uint32_t occluder, uint64_t number,
-                                 const StageParams& params) {
-  const ReverseItem item = reverseItemOf(scene, faces, border, occluder, number);
+/// The item of a discontinuity that waits, by the method of the parameters. entries: the whole list.
+inline ReverseItem reverseItemOf(const Scene& scene, std::span<const Face> faces,
+                                 std::span<const PvsEntry> entries, const Discontinuity& discontinuity,
+                                 uint64_t number, const StageParams& params) {
+  const uvec4 ray = discontinuity.ray;
+  const PvsEntry& entry = entries[ray.x];
+  const Ray border = borderRayOf(scene, entry, ray.y, ray.w, params);
+  const ReverseItem item = reverseItemOf(scene, faces, border, ray.z, number);
   if (!isGvs(params)) return item;
   const uint32_t t = entry.origin_triangle.w;
   return gvsReverseItem(item, entryRay(entry), cornerOf(scene, t, 0), cornerOf(scene, t, 1),

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/pvs/method.h"
+#include "core/pvs/order.h"
 #include "core/scene/scene.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/types.h"
@@ -15,10 +16,15 @@ namespace sightline {
 /// parameters: same sets, bit for bit.
 struct BakeParams {
   Method method = Method::kGvspp;
-  uint32_t n_rand = 10'000'000;         ///< random rays an iteration, 1 .. 2^32 - 3
-  uint32_t n_abs_edge = 30;             ///< samples along each long edge of the border polygon, 0..1000
-  uint32_t n_rs_edge = 3;               ///< samples along each edge of the view cell's faces, 0..1000
-  uint32_t n_rs_area = 4;               ///< samples on the view cell's faces, 0..100000
+  uint32_t n_rand = 10'000'000;  ///< random rays an iteration, 1 .. 2^32 - 3
+  uint32_t n_abs_edge = 30;      ///< samples along each long edge of the border polygon, 0..1000: at most,
+  float abs_spacing = 0x1p-11f;  ///< where they come closer than this to each other, seen from the ray's
+                                 ///< origin in radians (0: never fewer)
+  uint32_t n_rs_edge = 3;        ///< samples along each edge of the view cell's faces, 0..1000
+  uint32_t n_rs_area = 4;        ///< samples on the view cell's faces, 0..100000
+  uint32_t reverse_stride = 4;   ///< reverse samples for the first of neighbouring border samples with the
+                                 ///< same occluder, and every so many-th; 1: for all
+  Order order = Order::kYield;   ///< of gvs++ and naive
   float delta_abs_relative = 0x1p-17f;  ///< border distance, share of the distance from the ray's origin
   float delta_abs = 0;                  ///< border distance in world units (thesis: 0.001), added
   float delta_rs_relative = 0x1p-10f;   ///< discontinuity threshold, share of the distance

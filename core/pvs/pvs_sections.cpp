@@ -34,6 +34,9 @@ void writeParams(ByteWriter& out, const BakeParams& params) {
   out.number(params.max_seconds);
   out.number(params.raster_resolution);
   out.number(params.target_error);
+  out.number(params.abs_spacing);
+  out.number(params.reverse_stride);
+  out.number(uint32_t(params.order));
 }
 
 BakeParams readParams(ByteReader& in) {
@@ -57,6 +60,11 @@ BakeParams readParams(ByteReader& in) {
   params.max_seconds = in.number<double>();
   params.raster_resolution = in.number<uint32_t>();
   params.target_error = in.number<double>();
+  params.abs_spacing = in.number<float>();
+  params.reverse_stride = in.number<uint32_t>();
+  const auto order = in.number<uint32_t>();
+  require(order <= uint32_t(Order::kYield), "unknown order");
+  params.order = Order(order);
   return params;
 }
 

@@ -10,7 +10,7 @@
 namespace sightline {
 
 inline constexpr uint8_t kPvsMagic[8] = {0x89, 'S', 'L', 'P', 'V', 'S', '\r', '\n'};
-inline constexpr uint32_t kPvsVersion = 2;
+inline constexpr uint32_t kPvsVersion = 3;
 
 /// Bytes before the first section.
 inline constexpr size_t kPvsPreludeBytes = 16;

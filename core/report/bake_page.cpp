@@ -149,8 +149,11 @@ std::vector<ReportFact> parameterFacts(const BakeParams& p) {
   if (!drawn && p.method != Method::kRandom) {
     if (p.method != Method::kGvs) {  // which has fixed ones
       facts.push_back({"border samples an edge", std::to_string(p.n_abs_edge)});
+      facts.push_back({"their spacing", limit(p.abs_spacing)});
       facts.push_back({"reverse samples an edge", std::to_string(p.n_rs_edge)});
       facts.push_back({"reverse samples on faces", std::to_string(p.n_rs_area)});
+      facts.push_back({"reverse stride", std::to_string(p.reverse_stride)});
+      facts.push_back({"order", orderName(p.order)});
     }
     const std::vector<ReportFact> exploration = {
         {"border distance", fmt::format("{:g} + {:g} of distance", p.delta_abs, p.delta_abs_relative)},

@@ -45,7 +45,10 @@ Json toJson(const BakeParams& params) {
           {"batch_rays", params.batch_rays},
           {"validation_rays", params.validation_rays},
           {"raster_resolution", params.raster_resolution},
-          {"target_error", params.target_error}};
+          {"target_error", params.target_error},
+          {"abs_spacing", params.abs_spacing},
+          {"reverse_stride", params.reverse_stride},
+          {"order", orderName(params.order)}};
 }
 
 }  // namespace sightline

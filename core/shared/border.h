@@ -14,16 +14,34 @@
 //
 // Differences from the thesis: "outside" is decided by the third corner (equation 5.4 presumes an
 // orientation), and the bisector of a sharp corner comes from the edges' own directions, where the sum of the
-// normals cancels.
+// normals cancels. The samples' number follows the triangle's apparent size: of a city's visible triangles 40
+// % are below a tenth of a pixel, and their neighbours need no twenty samples an edge.
 #ifndef SL_BORDER_H
 #define SL_BORDER_H
 #include "core/shared/ray.h"
 #include "core/shared/stage_params.h"
 SL_NAMESPACE_BEGIN
 
-/// Rays to one border polygon: 3 n_ABSEdge + 9; of the original method at most.
-SL_FUNC uint borderRayCount(StageParams params) {
-  return isGvs(params) ? kGvsPositions : 3u * params.counts.x + 9u;
+/// Samples between the ends of a long edge at least, where the spacing decides.
+SL_CONST uint kFewestBorderSamples = 2u;
+
+/// Rays to a border polygon with so many samples between the ends of its long edges; of the original method
+/// at most.
+SL_FUNC uint borderRayCount(uint samples, StageParams params) {
+  return isGvs(params) ? kGvsPositions : 3u * samples + 9u;
+}
+
+/// Samples between the ends of each long edge of the border polygon of triangle p0 p1 p2: as many as lie
+/// spacing.x apart along the longest edge, on a unit sphere about origin; n_ABSEdge at most.
+SL_FUNC uint borderSamples(vec3 p0, vec3 p1, vec3 p2, vec3 origin, StageParams params) {
+  uint most = params.counts.x;
+  if (params.spacing.x == 0.0f || most <= kFewestBorderSamples) return most;
+  vec3 r0 = normalize3(sub3(p0, origin));
+  vec3 r1 = normalize3(sub3(p1, origin));
+  vec3 r2 = normalize3(sub3(p2, origin));
+  float longest = max(max(length3(sub3(r1, r0)), length3(sub3(r2, r1))), length3(sub3(r0, r2)));
+  float wanted = slDivide(longest, params.spacing.x);
+  return wanted < slFloat(most) ? max(slUint(wanted), kFewestBorderSamples) : most;
 }
 
 /// Border distance at corner p for a ray from origin. The relative part grows with the distance and never
@@ -83,7 +101,7 @@ SL_FUNC vec3 borderVertex(vec3 p, vec3 next, vec3 previous, uint which, vec3 ori
 
 /// One side of the border polygon: all that its samples have in common.
 SL_STRUCT(BorderEdge) {
-  vec4 bisector;  ///< vertex outside the edge's first corner
+  vec4 bisector;  ///< vertex outside the edge's first corner; w: samples between the ends
   vec4 start;     ///< ends of the long edge
   vec4 end;
 };
@@ -97,35 +115,38 @@ SL_FUNC BorderEdge borderEdge(vec3 p0, vec3 p1, vec3 p2, uint side, vec3 origin,
   vec3 start = borderVertex(a, b, c, 1u, origin, params);
   vec3 end = borderVertex(b, c, a, 2u, origin, params);
   BorderEdge edge;
-  edge.bisector = vec4(bisector.x, bisector.y, bisector.z, 0.0f);
+  float samples = slFloat(borderSamples(p0, p1, p2, origin, params));
+  edge.bisector = vec4(bisector.x, bisector.y, bisector.z, samples);
   edge.start = vec4(start.x, start.y, start.z, 0.0f);
   edge.end = vec4(end.x, end.y, end.z, 0.0f);
   return edge;
 }
 
-/// Samples of one side: its bisector vertex, both ends and n_ABSEdge between.
-SL_FUNC uint borderSideCount(StageParams params) {
-  return params.counts.x + 3u;
+/// The side that point k (0 .. borderRayCount - 1) of a polygon lies on: it has its bisector vertex, both
+/// ends and the samples between.
+SL_FUNC uint borderSide(uint k, uint samples) {
+  return k / (samples + 3u);
 }
 
-/// The side that point k (0 .. borderRayCount - 1) of the polygon lies on.
-SL_FUNC uint borderSide(uint k, StageParams params) {
-  return k / borderSideCount(params);
+/// Place 0 .. samples + 2 of point k on its side.
+SL_FUNC uint borderPlace(uint k, uint samples) {
+  return k % (samples + 3u);
 }
 
 /// Point k of the polygon; edge: of its side.
-SL_FUNC vec3 borderPoint(BorderEdge edge, uint k, StageParams params) {
-  uint place = k % borderSideCount(params);
+SL_FUNC vec3 borderPoint(BorderEdge edge, uint k) {
+  uint samples = slUint(edge.bisector.w);
+  uint place = borderPlace(k, samples);
   if (place == 0u) return xyz3(edge.bisector);
   if (place == 1u) return xyz3(edge.start);
-  if (place == params.counts.x + 2u) return xyz3(edge.end);
-  float t = slDivide(slFloat(place - 1u), slFloat(params.counts.x + 1u));
+  if (place == samples + 2u) return xyz3(edge.end);
+  float t = slDivide(slFloat(place - 1u), slFloat(samples + 1u));
   return add3(scale3(xyz3(edge.start), 1.0f - t), scale3(xyz3(edge.end), t));
 }
 
 /// The ray from origin to point k: t = 1 there (x_target).
-SL_FUNC Ray borderRay(BorderEdge edge, uint k, vec3 origin, StageParams params) {
-  return rayTo(origin, borderPoint(edge, k, params));
+SL_FUNC Ray borderRay(BorderEdge edge, uint k, vec3 origin) {
+  return rayTo(origin, borderPoint(edge, k));
 }
 
 /// Whether a border ray meets a discontinuity (equation 5.7): it hits nothing, or something nearer than its
@@ -135,6 +156,16 @@ SL_FUNC bool isDiscontinuity(Ray ray, Hit hit, StageParams params) {
   float distance = length3(xyz3(ray.direction));
   return (1.0f - hit.t) * distance > params.distances.z * distance + params.distances.w;
 }
+
+/// Whether a discontinuity gets reverse rays. place: on its side of the border polygon; follows: the sample
+/// before it on this side met one by the same occluder, or nothing like this one. In a run of such samples
+/// the first counts, and every sample whose place is a multiple of the stride; a stride of 1 keeps all.
+SL_FUNC bool keepsDiscontinuity(uint place, bool follows, StageParams params) {
+  return !follows || place % params.method.y == 0u;
+}
+
+/// Border rays are traced for whole blocks of entries, so that devices can cut batches alike.
+SL_CONST uint kBorderBlock = 32u;
 
 SL_NAMESPACE_END
 #endif

@@ -13,11 +13,12 @@ SL_CONST uint kGvsPositions = 72u;
 
 /// Constant for a view cell.
 SL_STRUCT(StageParams) {
-  uvec4 counts;    ///< x: n_ABSEdge, y: n_RSEdge, z: n_RSArea, w: number of faces
+  uvec4 counts;    ///< x: n_ABSEdge (at most), y: n_RSEdge, z: n_RSArea, w: number of faces
   uvec4 shifts;    ///< random shifts (Cranley-Patterson) for the bases 2, 3, 5, 7: of random sampling
   vec4 distances;  ///< x: delta_ABS relative to the distance, y: delta_ABS in world units,
                    ///< z: delta_RS relative, w: delta_RS in world units; relative and absolute parts add up
-  uvec4 method;    ///< x: kSample...
+  uvec4 method;    ///< x: kSample..., y: reverse stride, 1 or more (keepsDiscontinuity)
+  vec4 spacing;    ///< x: of border samples, seen from the ray's origin (borderSamples); 0: always n_ABSEdge
 };
 
 SL_FUNC bool isGvs(StageParams params) {

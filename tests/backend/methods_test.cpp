@@ -153,6 +153,31 @@ TEST_P(Methods, RandomFindsWhatTheRandomRaysOfGvsppFind) {
   EXPECT_TRUE(std::ranges::includes(gvspp.triangles, random.triangles));
 }
 
+/// In the thesis's order reverse rays follow every batch of border rays; by yield border rays come first.
+TEST_P(Methods, TheOrderDecidesWhenReverseRaysCome) {
+  const Scene scene = generateScene("city", 20'000, 7);
+  const ViewCell cell = generateCells("city", 20'000, 7).front();
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const auto device = makeDevice(GetParam(), scene, bvh);
+  const auto borderBatchesInARow = [&](Order order) {
+    BakeParams p = params(Method::kGvspp);
+    p.order = order;
+    p.batch_rays = 1u << 13;
+    p.max_rays = 500'000;
+    BakeTrace trace;
+    bakeCell(*device, scene, cell, 0, p, {.trace = &trace});
+    size_t most = 0, row = 0;
+    for (size_t i = 1; i < trace.curve.size(); ++i) {
+      const bool border = trace.curve[i].rays[kStageBorder] > trace.curve[i - 1].rays[kStageBorder];
+      row = border ? row + 1 : 0;
+      most = std::max(most, row);
+    }
+    return most;
+  };
+  EXPECT_EQ(borderBatchesInARow(Order::kQueue), 1u);
+  EXPECT_GT(borderBatchesInARow(Order::kYield), 4u);
+}
+
 /// The naive implementation gives the set of gvs++ with the same witnesses, in the same order.
 TEST_P(Methods, NaiveIsGvsppWithTheSetOnTheHost) {
   const Scene scene = generateScene("city", 20'000, 7);
@@ -161,10 +186,12 @@ TEST_P(Methods, NaiveIsGvsppWithTheSetOnTheHost) {
   const auto device = makeDevice(GetParam(), scene, bvh);
   const auto naive = makeNaiveDevice(makeDevice(GetParam(), scene, bvh), scene);
   BakeParams p = params(Method::kGvspp);
-  BakeTrace trace, naive_trace;
-  const CellPvs expected = bakeCell(*device, scene, cell, 0, p, {.trace = &trace});
-  p.method = Method::kNaive;
-  for (int run = 0; run < 2; ++run) {
+  for (const Order order : {Order::kQueue, Order::kYield}) {
+    p.order = order;
+    p.method = Method::kGvspp;
+    BakeTrace trace, naive_trace;
+    const CellPvs expected = bakeCell(*device, scene, cell, 0, p, {.trace = &trace});
+    p.method = Method::kNaive;
     const CellPvs pvs = bakeCell(*naive, scene, cell, 0, p, {.trace = &naive_trace});
     ASSERT_EQ(pvs.triangles, expected.triangles);
     ASSERT_EQ(naive_trace.order, trace.order);

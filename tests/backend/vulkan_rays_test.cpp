@@ -38,6 +38,8 @@ class VulkanRays : public testing::Test {
     params_.counts = uvec4(7, 5, 11, faces_.size());
     params_.shifts = uvec4(0x9e3779b9u, 12345678u, 99u, 1000007u);
     params_.distances = vec4(1e-4f, 1e-5f, 1e-3f, 1e-4f);
+    params_.method.y = 1;
+    params_.spacing.x = 0.01f;
     runner_->launch.params = params_;
     runner_->launch.shifts = params_.shifts;
     runner_->launch.faces = put(faces_);
@@ -78,21 +80,8 @@ class VulkanRays : public testing::Test {
     return result;
   }
 
-  Ray borderRayOf(const PvsEntry& entry, uint32_t k) const {
-    const uvec4 bits = entry.origin_triangle;
-    const vec3 origin(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z));
-    const vec3 a = corner(bits.w, 0), b = corner(bits.w, 1), c = corner(bits.w, 2);
-    if (isGvs(params_)) {
-      const vec3 from = gvsVertex(a, b, c, gvsFirstVertex(k), origin, params_);
-      return rayTo(origin, gvsPoint(from, gvsVertex(a, b, c, gvsSecondVertex(k), origin, params_), k));
-    }
-    return borderRay(borderEdge(a, b, c, borderSide(k, params_), origin, params_), k, origin, params_);
-  }
-
   /// Compares the border rays of entries, and the reverse rays of some of them.
   void compareBorderAndReverse();
-
-  vec3 corner(uint32_t triangle, int i) const { return scene_.positions[scene_.triangles[triangle][i]]; }
 
   const Scene scene_ = generateScene("bistro", 20'000, 3);
   const ViewCell cell_ = generateCells("bistro", 20'000, 3).front();
@@ -149,14 +138,24 @@ void VulkanRays::compareBorderAndReverse() {
                        uvec4(floatBitsToUint(ray.direction.x), floatBitsToUint(ray.direction.y),
                              floatBitsToUint(ray.direction.z), kStageRandom)});
   }
-  const uint32_t per_entry = borderRayCount(params_);
-  const auto total = static_cast<uint32_t>(entries.size() * per_entry);
+  const std::vector<uint64_t> starts = borderStarts(scene_, entries, params_);
+  const auto total = static_cast<uint32_t>(starts.back());
+  if (!isGvs(params_)) {
+    ASSERT_LT(total, entries.size() * borderRayCount(params_.counts.x, params_));  // the spacing thins some
+  }
   runner_->launch.entries = put(entries);
+  runner_->launch.border_starts = put(std::vector<uint32_t>(starts.begin(), starts.end()));
+  runner_->launch.border_count = uint32_t(entries.size());
   prepare("border_edges", runner_->launch.border_edges, uint32_t(entries.size()) * 3, sizeof(BorderEdge));
   const std::vector<Ray> made = make(kStageBorder, total);
+  const BorderRays polygons(scene_, entries, starts, params_);
   std::vector<Ray> border(total);
+  std::vector<uvec4> place(total);  // of a discontinuity, were there one
   for (uint32_t i = 0; i < total; ++i) {
-    border[i] = borderRayOf(entries[i / per_entry], i % per_entry);
+    const uint32_t e = polygons.entryOf(i), k = polygons.rayOf(i, e);
+    const uint32_t samples = borderSamplesOf(scene_, entries[e], params_);
+    place[i] = uvec4(e, k, kNoTriangle, samples);
+    border[i] = borderRayOf(scene_, entries[e], k, samples, params_);
     ASSERT_PRED_FORMAT2(sameRay, made[i], border[i]) << "border ray " << i;
   }
 
@@ -164,28 +163,25 @@ void VulkanRays::compareBorderAndReverse() {
   const LeafParts leaves = splitIntoParts(bvh_, uint32_t(scene_.triangles.size()), 0xffffffffu);
   std::vector<uint32_t> leaf_of(leaves.ids.size());
   for (uint32_t leaf = 0; leaf < leaves.ids.size(); ++leaf) leaf_of[leaves.ids[leaf]] = leaf;
-  std::vector<uint32_t> places, occluders(total, kNoTriangle), hit_leaves(total, kNoTriangle);
+  std::vector<Discontinuity> waiting, on_device;
   for (uint32_t i = 0; i < total; i += 29) {
-    places.push_back(i);
-    occluders[i] = tracer.trace(border[i]).triangle;
-    if (occluders[i] != kNoTriangle) hit_leaves[i] = leaf_of[occluders[i]];
+    place[i].z = tracer.trace(border[i]).triangle;
+    waiting.push_back({place[i]});
+    if (place[i].z != kNoTriangle) place[i].z = leaf_of[place[i].z];
+    on_device.push_back({place[i]});
   }
-  runner_->launch.discontinuities = put(places);
-  runner_->launch.border_hits = put(hit_leaves);
+  runner_->launch.discontinuities = put(on_device);
   runner_->launch.items_before = 0xfffffff0ull;  // running numbers past 32 bits
   const uint32_t per_item = reverseRayCount(params_);
-  const auto reverse_total = static_cast<uint32_t>(places.size() * per_item);
-  prepare("reverse_items", runner_->launch.reverse_items, uint32_t(places.size()), sizeof(ReverseItem));
+  const auto reverse_total = static_cast<uint32_t>(waiting.size() * per_item);
+  prepare("reverse_items", runner_->launch.reverse_items, uint32_t(waiting.size()), sizeof(ReverseItem));
   const std::vector<Ray> reverse = make(kStageReverse, reverse_total);
   uint32_t excluded = 0;
   for (uint32_t i = 0; i < reverse_total; ++i) {
-    const uint32_t place = i / per_item, k = i % per_item;
-    const Ray& ray = border[places[place]];
-    const uint64_t number = runner_->launch.items_before + place;
-    const uint32_t occluder = occluders[places[place]];
-    const PvsEntry& entry = entries[places[place] / per_entry];
-    const ReverseItem item = reverseItemOf(scene_, faces_, entry, ray, occluder, number, params_);
-    const Ray expected = reverseRayOf(item, faces_, k, params_);
+    const uint32_t w = i / per_item;
+    const uint64_t number = runner_->launch.items_before + w;
+    const ReverseItem item = reverseItemOf(scene_, faces_, entries, waiting[w], number, params_);
+    const Ray expected = reverseRayOf(item, faces_, i % per_item, params_);
     ASSERT_PRED_FORMAT2(sameRay, reverse[i], expected) << "reverse ray " << i;
     excluded += !hasDirection(expected);
   }

@@ -17,6 +17,7 @@
 #include "core/cli/number_checks.h"
 #include "core/gvs/bake_cell.h"
 #include "core/gvs/face_rays.h"
+#include "core/gvs/make_stage_params.h"
 #include "core/gvs/stage_rays.h"
 #include "core/gvs/thesis_params.h"
 #include "core/scene/scene.h"
@@ -39,7 +40,7 @@ struct Bin {
   uint64_t triangles = 0;
   std::array<uint64_t, 4> found{};  ///< of them, by the stage that found them
   uint64_t border_rays = 0, reverse_rays = 0;
-  uint64_t runs = 0;  ///< discontinuities, those of one edge with the same occluder counted once
+  uint64_t discontinuities = 0, runs = 0;  ///< the latter: those of one edge with the same occluder once
 };
 
 /// Solid angle of a triangle (Van Oosterom and Strackee 1983).
@@ -80,60 +81,51 @@ void add(Waste& waste, size_t size, size_t distance, auto&& change) {
   change(waste.all);
 }
 
-StageParams stageParams(const BakeParams& params, size_t faces) {
-  StageParams stage{};
-  stage.counts = uvec4(params.n_abs_edge, params.n_rs_edge, params.n_rs_area, faces);
-  stage.distances =
-      vec4(params.delta_abs_relative, params.delta_abs, params.delta_rs_relative, params.delta_rs);
-  return stage;
-}
-
 /// Traces the border rays of the entries first .. and books them.
 void addEntries(Device& device, const Scene& scene, std::span<const PvsEntry> entries,
                 const StageParams& params, double reach, Waste& waste) {
-  const uint32_t per_entry = borderRayCount(params), per_side = borderSideCount(params);
-  std::vector<Ray> rays;
-  for (const PvsEntry& entry : entries) {
-    for (uint32_t k = 0; k < per_entry; ++k) {
-      rays.push_back(borderRay(borderEdgeOf(scene, entry, borderSide(k, params), params), k,
-                               entryOrigin(entry), params));
-    }
-  }
+  const std::vector<uint64_t> starts = borderStarts(scene, entries, params);
+  BorderRays border(scene, entries, starts, params);
+  std::vector<Ray> rays(starts.back());
+  for (uint32_t i = 0; i < rays.size(); ++i) rays[i] = border(i);
   std::vector<Hit> hits(rays.size());
   device.traceRays(rays, hits);
   for (size_t e = 0; e < entries.size(); ++e) {
     const uint32_t triangle = entries[e].origin_triangle.w;
+    const uint32_t samples = borderSamplesOf(scene, entries[e], params);
     const glm::dvec3 eye(entryOrigin(entries[e]));
-    uint64_t discontinuities = 0, runs = 0;
-    for (uint32_t k = 0; k < per_entry; ++k) {
-      const size_t i = e * per_entry + k;
+    uint64_t discontinuities = 0, kept = 0, runs = 0;
+    for (uint64_t i = starts[e]; i < starts[e + 1]; ++i) {
       if (!isDiscontinuity(rays[i], hits[i], params)) continue;
-      ++discontinuities;
-      const bool goes_on = k % per_side != 0 && isDiscontinuity(rays[i - 1], hits[i - 1], params) &&
+      const uint32_t place = borderPlace(uint32_t(i - starts[e]), samples);
+      const bool follows = place > 0 && isDiscontinuity(rays[i - 1], hits[i - 1], params) &&
                            hits[i - 1].triangle == hits[i].triangle;
-      runs += goes_on ? 0 : 1;
+      ++discontinuities;
+      kept += keepsDiscontinuity(place, follows, params) ? 1 : 0;
+      runs += follows ? 0 : 1;
     }
     add(waste, sizeBin(solidAngle(scene, triangle, eye) / kPixel),
         distanceBin(distanceTo(scene, triangle, eye), reach), [&](Bin& bin) {
           ++bin.triangles;
           ++bin.found[entries[e].direction_stage.w];
-          bin.border_rays += per_entry;
-          bin.reverse_rays += discontinuities * reverseRayCount(params);
+          bin.border_rays += starts[e + 1] - starts[e];
+          bin.reverse_rays += kept * reverseRayCount(params);
+          bin.discontinuities += discontinuities;
           bin.runs += runs;
         });
   }
 }
 
-std::string row(const std::string& name, const Bin& bin, const Bin& all, uint32_t per_item) {
+std::string row(const std::string& name, const Bin& bin, const Bin& all) {
   const double rays = double(bin.border_rays + bin.reverse_rays),
                total = double(all.border_rays + all.reverse_rays);
   return fmt::format("| {} | {} | {:.1f} % | {} | {} | {} | {:.1f} % | {:.1f} |\n", name, bin.triangles,
                      100 * double(bin.triangles) / double(all.triangles), bin.found[0], bin.found[1],
                      bin.found[2], 100 * rays / total,
-                     bin.runs == 0 ? 0.0 : double(bin.reverse_rays) / per_item / double(bin.runs));
+                     bin.runs == 0 ? 0.0 : double(bin.discontinuities) / double(bin.runs));
 }
 
-void print(const ViewCell& cell, const CellPvs& pvs, const Waste& waste, double reach, uint32_t per_item) {
+void print(const ViewCell& cell, const CellPvs& pvs, const Waste& waste, double reach) {
   const CellStats& s = pvs.stats;
   fmt::print("\n{}: {} triangles\n", cell.name, pvs.triangles.size());
   for (const auto& [name, stage] :
@@ -149,16 +141,15 @@ void print(const ViewCell& cell, const CellPvs& pvs, const Waste& waste, double 
   for (size_t b = 0; b < kBins; ++b) {
     const double low = std::pow(10.0, double(b) - 4);
     const std::string name = b == 0 ? "below 0.001" : fmt::format("{:g} to {:g}", low, low * 10);
-    if (waste.by_size[b].triangles > 0) fmt::print("{}", row(name, waste.by_size[b], waste.all, per_item));
+    if (waste.by_size[b].triangles > 0) fmt::print("{}", row(name, waste.by_size[b], waste.all));
   }
   fmt::print("| distance | {}", head);
   for (size_t b = 0; b < kBins; ++b) {
     const double low = reach * std::exp2(double(b) - double(kBins) - 1);
     const std::string name = fmt::format("{:.3g} to {:.3g}", b == 0 ? 0 : low, low * 2);
-    if (waste.by_distance[b].triangles > 0)
-      fmt::print("{}", row(name, waste.by_distance[b], waste.all, per_item));
+    if (waste.by_distance[b].triangles > 0) fmt::print("{}", row(name, waste.by_distance[b], waste.all));
   }
-  fmt::print("{}", row("all", waste.all, waste.all, per_item));
+  fmt::print("{}", row("all", waste.all, waste.all));
 }
 
 void bench(const Options& options) {
@@ -173,13 +164,13 @@ void bench(const Options& options) {
     const CellPvs pvs = bakeCell(*device, scene, cells[c], c, options.params);
     std::vector<PvsEntry> entries = device->readPvs();
     std::erase_if(entries, [](const PvsEntry& entry) { return entry.direction_stage.w == kStageContained; });
-    const StageParams params = stageParams(options.params, cellFaces(cells[c]).size());
+    const StageParams params = makeStageParams(options.params, cellFaces(cells[c]).size(), uvec4(0));
     Waste waste;
     for (size_t first = 0; first < entries.size(); first += kChunkEntries) {
       const size_t count = std::min(kChunkEntries, entries.size() - first);
       addEntries(*device, scene, std::span(entries).subspan(first, count), params, reach, waste);
     }
-    print(cells[c], pvs, waste, reach, reverseRayCount(params));
+    print(cells[c], pvs, waste, reach);
   }
 }
 

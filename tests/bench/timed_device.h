@@ -36,8 +36,9 @@ class TimedDevice final : public Device {
   void traceRandom(const RandomSegment& segment) override {
     timed("trace random", [&] { inner_.traceRandom(segment); });
   }
-  uint32_t traceBorder(uint32_t first, uint32_t count) override {
-    return timed("trace border", [&] { return inner_.traceBorder(first, count); });
+  void dropDiscontinuities() override { inner_.dropDiscontinuities(); }
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
+    return timed("trace border", [&] { return inner_.traceBorder(first, most_rays); });
   }
   void traceReverse(uint32_t first, uint32_t count) override {
     timed("trace reverse", [&] { inner_.traceReverse(first, count); });

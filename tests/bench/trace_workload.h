@@ -7,8 +7,8 @@
 
 #include "bvh/bvh.h"
 #include "core/device/cpu_tracer.h"
+#include "core/gvs/make_stage_params.h"
 #include "core/gvs/random_segment.h"
-#include "core/pvs/pvs.h"
 #include "core/scene/generate.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/border.h"
@@ -54,25 +54,24 @@ inline void addRandomRays(Workload& work, const ViewCell& cell, uint32_t count) 
   }
 }
 
-/// Border rays of the triangles that a cell's rays found, in ascending id, each from the first ray's origin:
-/// as the device's list has them after a batch.
+/// Border rays of the triangles that a cell's rays found, all samples, in ascending id, each from the first
+/// ray's origin: as the device's list has them after a batch.
 inline void addBorderRays(Workload& work, const CpuTracer& tracer, size_t first, size_t last, size_t count) {
-  const BakeParams defaults;
-  StageParams params{};
-  params.counts = uvec4(defaults.n_abs_edge, defaults.n_rs_edge, defaults.n_rs_area, 1);
-  params.distances =
-      vec4(defaults.delta_abs_relative, defaults.delta_abs, defaults.delta_rs_relative, defaults.delta_rs);
+  BakeParams defaults;
+  defaults.abs_spacing = 0;
+  const StageParams params = makeStageParams(defaults, 1, uvec4(0));
+  const uint32_t samples = params.counts.x, per_entry = borderRayCount(samples, params);
   std::map<uint32_t, vec3> found;
-  for (size_t i = first; i < last && found.size() * borderRayCount(params) < count; ++i) {
+  for (size_t i = first; i < last && found.size() * per_entry < count; ++i) {
     const Hit hit = tracer.trace(work.random[i]);
     if (hit.triangle != kNoTriangle) found.emplace(hit.triangle, vec3(work.random[i].origin));
   }
   for (const auto& [id, origin] : found) {
     const glm::uvec3 v = work.scene.triangles[id];
     const auto& p = work.scene.positions;
-    for (uint32_t k = 0; k < borderRayCount(params); ++k) {
-      work.border.push_back(borderRay(
-          borderEdge(p[v.x], p[v.y], p[v.z], borderSide(k, params), origin, params), k, origin, params));
+    for (uint32_t k = 0; k < per_entry; ++k) {
+      work.border.push_back(
+          borderRay(borderEdge(p[v.x], p[v.y], p[v.z], borderSide(k, samples), origin, params), k, origin));
     }
   }
 }

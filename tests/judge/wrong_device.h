@@ -28,7 +28,10 @@ class WrongDevice final : public Device {
     device_->beginCell(faces, params);
   }
   void traceRandom(const RandomSegment& segment) override { device_->traceRandom(segment); }
-  uint32_t traceBorder(uint32_t first, uint32_t count) override { return device_->traceBorder(first, count); }
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
+    return device_->traceBorder(first, most_rays);
+  }
+  void dropDiscontinuities() override { device_->dropDiscontinuities(); }
   void traceReverse(uint32_t first, uint32_t count) override { device_->traceReverse(first, count); }
   uint32_t collect(uint32_t stage) override { return device_->collect(stage); }
   void insertContained(std::span<const uint32_t> triangles) override { device_->insertContained(triangles); }

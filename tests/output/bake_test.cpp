@@ -165,6 +165,9 @@ TEST(Bake, NamesEveryDifferenceOfTheInputs) {
                        "method (random there, gvs now)"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.raster_resolution = 7; }), "raster_resolution"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.target_error = 0.5; }), "target_error"));
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.abs_spacing = 0.5f; }), "abs_spacing"));
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.reverse_stride = 7; }), "reverse_stride"));
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.order = Order::kYield; }), "order (queue there, yield now)"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.n_rand = 7; }), "n_rand (4321 there, 7 now)"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.n_abs_edge = 7; }), "n_abs_edge"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.n_rs_edge = 7; }), "n_rs_edge"));

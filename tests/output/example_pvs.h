@@ -59,6 +59,9 @@ inline PvsFile examplePvs(bool witnesses = true) {
   pvs.params.seed = 77;
   pvs.params.raster_resolution = 640;
   pvs.params.target_error = 0.125;
+  pvs.params.abs_spacing = 0.25f;
+  pvs.params.reverse_stride = 3;
+  pvs.params.order = Order::kQueue;
   pvs.has_witnesses = witnesses;
   pvs.planned = {{"a", {1, 2, 3}, {4, 5, 0}, {6, 7, 8}},
                  {"b-\xc3\xa9", {0, 0, 0}, {1, 1, 1}, {0, 0, 0}},

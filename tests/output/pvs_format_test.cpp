@@ -88,6 +88,9 @@ void checkHead(Cursor head, const PvsFile& want) {
   EXPECT_EQ(head.f64(), p.max_seconds);
   EXPECT_EQ(head.u32(), p.raster_resolution);
   EXPECT_EQ(head.f64(), p.target_error);
+  EXPECT_EQ(head.take<float>(), p.abs_spacing);
+  EXPECT_EQ(head.u32(), p.reverse_stride);
+  EXPECT_EQ(head.u32(), uint32_t(p.order));
   EXPECT_EQ(head.text(), want.scene_name);
   EXPECT_EQ(head.text(), want.device);
   ASSERT_EQ(head.u32(), want.planned.size());
@@ -150,7 +153,7 @@ TEST(PvsFormat, AReaderWrittenFromTheDocumentReadsAFile) {
   savePvs(want, folder / "x.pvs");
   const auto bytes = readBytes(folder / "x.pvs");
   Cursor file{bytes.data(), bytes.data() + bytes.size()};
-  const uint8_t prelude[16] = {0x89, 0x53, 0x4c, 0x50, 0x56, 0x53, 0x0d, 0x0a, 2};
+  const uint8_t prelude[16] = {0x89, 0x53, 0x4c, 0x50, 0x56, 0x53, 0x0d, 0x0a, 3};
   EXPECT_EQ(std::memcmp(file.skip(16), prelude, 16), 0);
   checkHead(section(file, "HEAD"), want);
   for (uint32_t i = 0; i < want.cells.size(); ++i) checkCell(section(file, "CELL"), i, want.cells[i]);

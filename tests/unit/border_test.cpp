@@ -15,7 +15,7 @@ StageParams params(uint32_t n_edge, float relative, float absolute) {
 }
 
 Ray rayOf(vec3 a, vec3 b, vec3 c, uint32_t k, vec3 origin, const StageParams& p) {
-  return borderRay(borderEdge(a, b, c, borderSide(k, p), origin, p), k, origin, p);
+  return borderRay(borderEdge(a, b, c, borderSide(k, p.counts.x), origin, p), k, origin);
 }
 
 /// Orthonormal frame at right angles to the ray through p: what the ray's origin sees.
@@ -69,8 +69,8 @@ TEST_P(BorderPolygon, LiesOutsideTheTriangleAtTheAskedDistance) {
   const StageParams p = params(5, 0x1p-12f, 0);
   for (int round = 0; round < 2000; ++round) {
     const Sight s = make(random, GetParam());
-    for (uint32_t k = 0; k < borderRayCount(p); ++k) {
-      const vec3 x = borderPoint(borderEdge(s.a, s.b, s.c, borderSide(k, p), s.origin, p), k, p);
+    for (uint32_t k = 0; k < borderRayCount(p.counts.x, p); ++k) {
+      const vec3 x = borderPoint(borderEdge(s.a, s.b, s.c, borderSide(k, 5), s.origin, p), k);
       const uint32_t edge = k / 8, place = k % 8;
       const vec3 corners[3] = {s.a, s.b, s.c};
       const vec3 corner = corners[place == 7 ? (edge + 1) % 3 : edge];
@@ -105,7 +105,7 @@ TEST(BorderVertex, BisectorPointsAwayFromBluntAndSharpCorners) {
 
 TEST(BorderRay, EdgeAlongTheRayGivesFiniteRays) {
   const StageParams p = params(3, 0x1p-17f, 0);
-  for (uint32_t k = 0; k < borderRayCount(p); ++k) {
+  for (uint32_t k = 0; k < borderRayCount(p.counts.x, p); ++k) {
     const Ray ray = rayOf(vec3(0, 0, 1), vec3(0, 0, 2), vec3(1, 0, 3), k, vec3(0, 0, 0), p);
     ASSERT_TRUE(std::isfinite(ray.direction.x + ray.direction.y + ray.direction.z)) << k;
     ASSERT_GT(maxAbs3(xyz3(ray.direction)), 0.0f);
@@ -119,12 +119,69 @@ TEST(BorderRay, ScalesByPowersOfTwoBitForBit) {
   const StageParams p = params(4, 0x1p-17f, 0);
   for (int round = 0; round < 1000; ++round) {
     const vec3 a = point(), b = point(), c = point(), o = point();
-    for (uint32_t k = 0; k < borderRayCount(p); ++k) {
+    for (uint32_t k = 0; k < borderRayCount(p.counts.x, p); ++k) {
       const Ray once = rayOf(a, b, c, k, o, p);
       const Ray scaled = rayOf(a * 1024.0f, b * 1024.0f, c * 1024.0f, k, o * 1024.0f, p);
       ASSERT_EQ(once.direction * 1024.0f, scaled.direction) << "round " << round << " sample " << k;
     }
   }
+}
+
+TEST(BorderSamples, FollowTheLongestEdgesApparentSize) {
+  StageParams p = params(30, 0x1p-17f, 0);
+  const auto samples = [&](float size, float distance) {
+    return borderSamples(vec3(0, 0, distance), vec3(size, 0, distance), vec3(0, size / 4, distance), vec3(0),
+                         p);
+  };
+  EXPECT_EQ(samples(1e-6f, 100), 30u);  // without a spacing always all
+  p.spacing.x = 0.001f;
+  // The hypotenuse is the longest: sqrt(17) / 4 of size.
+  EXPECT_EQ(samples(1, 100), 10u);
+  EXPECT_EQ(samples(2, 100), 20u);
+  EXPECT_EQ(samples(2, 200), 10u);
+  EXPECT_EQ(samples(1e-3f, 100), kFewestBorderSamples);
+  EXPECT_EQ(samples(50, 100), 30u);
+  p.counts.x = 1;
+  EXPECT_EQ(samples(50, 100), 1u);
+  p.counts.x = 0;
+  EXPECT_EQ(samples(50, 100), 0u);
+}
+
+/// All samples lie on the sides of the polygon, from end to end, however many there are.
+TEST(BorderSamples, LieEvenlyBetweenTheEnds) {
+  std::mt19937 random(10);
+  std::uniform_real_distribution<float> unit(-5, 5);
+  const auto point = [&] { return vec3(unit(random), unit(random), unit(random)); };
+  StageParams p = params(12, 0x1p-12f, 0);
+  p.spacing.x = 0.02f;
+  uint32_t thinned = 0;
+  for (int round = 0; round < 1000; ++round) {
+    const vec3 a = point() * 0.2f, b = point() * 0.2f, c = point() * 0.2f, o = point() * 3.0f;
+    const uint32_t samples = borderSamples(a, b, c, o, p);
+    thinned += samples < 12 ? 1 : 0;
+    for (uint32_t side = 0; side < 3; ++side) {
+      const BorderEdge edge = borderEdge(a, b, c, side, o, p);
+      const vec3 start(edge.start), end(edge.end);
+      for (uint32_t i = 0; i <= samples + 1; ++i) {
+        const uint32_t k = side * (samples + 3) + 1 + i;
+        ASSERT_EQ(borderSide(k, samples), side);
+        const vec3 wanted = start + (end - start) * (float(i) / float(samples + 1));
+        ASSERT_LT(glm::length(borderPoint(edge, k) - wanted), 1e-5f) << "round " << round << " sample " << k;
+      }
+    }
+  }
+  EXPECT_GT(thinned, 100u);
+  EXPECT_LT(thinned, 1000u);
+}
+
+TEST(KeepsDiscontinuity, TheFirstOfARunAndEveryStride) {
+  StageParams p = params(30, 0x1p-17f, 0);
+  p.method.y = 8;
+  EXPECT_TRUE(keepsDiscontinuity(5, false, p));
+  EXPECT_FALSE(keepsDiscontinuity(5, true, p));
+  EXPECT_TRUE(keepsDiscontinuity(16, true, p));
+  p.method.y = 1;
+  EXPECT_TRUE(keepsDiscontinuity(5, true, p));
 }
 
 TEST(Discontinuity, IsAMissOrAHitClearlyInFront) {

@@ -54,7 +54,7 @@ TEST(GvsBorder, PositionsLieOnThePolygon) {
       const BorderEdge edge = borderEdge(p0, p1, p2, v / 3, origin, params);
       vertices[v] = gvsVertexOf(edge, v);
       ASSERT_EQ(vertices[v], gvsVertex(p0, p1, p2, v, origin, params)) << i;
-      ASSERT_EQ(vertices[v], borderPoint(edge, v, params)) << i;
+      ASSERT_EQ(vertices[v], borderPoint(edge, v)) << i;
     }
     for (uint32_t position = 0; position < kGvsPositions; ++position) {
       const vec3 a = vertices[gvsFirstVertex(position)], b = vertices[gvsSecondVertex(position)];
