@@ -4,12 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
 #include "core/error.h"
 #include "core/gvs/error_bound.h"
 #include "core/gvs/exploration_yield.h"
 #include "core/gvs/face_rays.h"
+#include "core/gvs/fill_set.h"
 #include "core/gvs/hemicube.h"
 #include "core/gvs/make_stage_params.h"
 #include "core/gvs/random_segment.h"
@@ -27,8 +27,9 @@ constexpr uint32_t kRandomLaunchRays = 1u << 22;
 /// all rays at most. Those that fail soon, while the error is large, hold up nothing.
 constexpr uint64_t kRaysBetweenTests = 4;
 
-/// So many discontinuities may wait for their reverse rays (512 MiB on the device) before these go first.
-constexpr uint32_t kMostWaiting = 1u << 25;
+/// When the device has listed so many discontinuities (512 MiB there), all of them get their reverse rays
+/// before more are listed: the list shrinks only when it is empty.
+constexpr uint32_t kMostListed = 1u << 25;
 
 /// One cell's bake in progress.
 class CellBake {
@@ -218,7 +219,7 @@ class CellBake {
       const double reverse_yield = waiting() > 0 ? yield_.reverse() : -1;
       const bool may_wait = iteration_new_ >= params_.threshold && !catching_up;
       if (may_wait && std::max(border_yield, reverse_yield) < random_yield) return true;
-      const bool to_border = (catching_up || border_yield >= reverse_yield) && waiting() < kMostWaiting;
+      const bool to_border = (catching_up || border_yield >= reverse_yield) && discontinuities_ < kMostListed;
       if (!(to_border ? border() : reverse())) return false;
     }
     return true;
@@ -349,25 +350,6 @@ class CellBake {
   uint64_t next_test_ = 0;  ///< rays traced when the error is next tested against the target
   bool validating_ = false;
 };
-
-/// Sorts the list by triangle into set and witnesses.
-void fillSet(const std::vector<PvsEntry>& entries, CellPvs& pvs) {
-  std::vector<uint32_t> order(entries.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-    return entries[a].origin_triangle.w < entries[b].origin_triangle.w;
-  });
-  const auto point = [](uvec4 bits) {
-    return vec3(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z));
-  };
-  pvs.triangles.reserve(order.size());
-  pvs.witnesses.reserve(order.size());
-  for (const uint32_t i : order) {
-    pvs.triangles.push_back(entries[i].origin_triangle.w);
-    pvs.witnesses.push_back(
-        {point(entries[i].origin_triangle), point(entries[i].direction_stage), entries[i].direction_stage.w});
-  }
-}
 
 }  // namespace
 

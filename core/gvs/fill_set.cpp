@@ -1,0 +1,28 @@
+#include "core/gvs/fill_set.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace sightline {
+
+void fillSet(std::span<const PvsEntry> entries, CellPvs& pvs) {
+  std::vector<uint32_t> order(entries.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+    return entries[a].origin_triangle.w < entries[b].origin_triangle.w;
+  });
+  const auto point = [](uvec4 bits) {
+    return vec3(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z));
+  };
+  pvs.triangles.reserve(order.size());
+  pvs.witnesses.reserve(order.size());
+  for (const uint32_t i : order) {
+    pvs.triangles.push_back(entries[i].origin_triangle.w);
+    pvs.witnesses.push_back(
+        {point(entries[i].origin_triangle), point(entries[i].direction_stage), entries[i].direction_stage.w});
+  }
+}
+
+}  // namespace sightline
