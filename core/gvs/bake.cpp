@@ -35,6 +35,16 @@ void requireSameInputs(const PvsFile& earlier, const PvsFile& wanted, const std:
                           file.string(), list));
 }
 
+/// What `load` reads of an earlier bake's file. Throws Error that says how to do without.
+template <typename Load>
+auto loadEarlier(Load load, const std::filesystem::path& file) {
+  try {
+    return load(file);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{} (choose another -o, or --overwrite it)", error.what()));
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile& wanted) {
@@ -92,12 +102,7 @@ Bake::Bake(PvsFile wanted, std::filesystem::path file, bool overwrite)
 
 bool Bake::openComplete() {
   if (!std::filesystem::exists(file_)) return false;
-  PvsFile earlier;
-  try {
-    earlier = loadPvs(file_);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{} (choose another -o, or --overwrite it)", error.what()));
-  }
+  const PvsFile earlier = loadEarlier(loadPvs, file_);
   requireSameInputs(earlier, head_, file_);
   if (earlier.cells.size() != earlier.planned.size()) return false;
   finished_ = summarize(earlier);
@@ -108,7 +113,7 @@ bool Bake::openComplete() {
 }
 
 void Bake::goOnAfterPart() {
-  const PartialPvs left = loadPartialPvs(part_);
+  const PartialPvs left = loadEarlier(loadPartialPvs, part_);
   part_problem_ = left.problem;
   if (left.whole_bytes == 0) return;
   requireSameInputs(left.pvs, head_, part_);

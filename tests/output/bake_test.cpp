@@ -167,7 +167,8 @@ TEST(Bake, NamesEveryDifferenceOfTheInputs) {
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.target_error = 0.5; }), "target_error"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.abs_spacing = 0.5f; }), "abs_spacing"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.reverse_stride = 7; }), "reverse_stride"));
-  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.order = Order::kYield; }), "order (queue there, yield now)"));
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.order = Order::kYield; }),
+                       "order (queue there, yield now)"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.n_rand = 7; }), "n_rand (4321 there, 7 now)"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.n_abs_edge = 7; }), "n_abs_edge"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.params.n_rs_edge = 7; }), "n_rs_edge"));
@@ -228,7 +229,9 @@ TEST(Bake, RefusesADamagedFileAndASecondWriter) {
   writeBytes(folder / "x.pvs", {1, 2, 3});
   EXPECT_NE(problem(fiveCells(), folder / "x.pvs"), "");
   writeBytes(folder / "y.pvs.part", std::vector<uint8_t>(100, 7));
-  EXPECT_NE(problem(fiveCells(), folder / "y.pvs"), "");
+  const std::string in_the_way = problem(fiveCells(), folder / "y.pvs");
+  EXPECT_NE(in_the_way.find("y.pvs.part"), std::string::npos) << in_the_way;
+  EXPECT_NE(in_the_way.find("--overwrite"), std::string::npos) << in_the_way;
   Bake first(fiveCells(), folder / "z.pvs");
   EXPECT_NE(problem(fiveCells(), folder / "z.pvs").find("another bake"), std::string::npos);
   EXPECT_NE(problem(fiveCells(), folder.path()), "");
