@@ -149,7 +149,7 @@ std::vector<ReportFact> parameterFacts(const BakeParams& p) {
   if (!drawn && p.method != Method::kRandom) {
     if (p.method != Method::kGvs) {  // which has fixed ones
       facts.push_back({"border samples an edge", std::to_string(p.n_abs_edge)});
-      facts.push_back({"their spacing", limit(p.abs_spacing)});
+      facts.push_back({"their spacing, in radians", limit(p.abs_spacing)});
       facts.push_back({"reverse samples an edge", std::to_string(p.n_rs_edge)});
       facts.push_back({"reverse samples on faces", std::to_string(p.n_rs_area)});
       facts.push_back({"reverse stride", std::to_string(p.reverse_stride)});
