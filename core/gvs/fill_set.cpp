@@ -5,6 +5,8 @@
 #include <numeric>
 #include <vector>
 
+#include "core/gvs/stage_rays.h"
+
 namespace sightline {
 
 void fillSet(std::span<const PvsEntry> entries, CellPvs& pvs) {
@@ -13,15 +15,12 @@ void fillSet(std::span<const PvsEntry> entries, CellPvs& pvs) {
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
     return entries[a].origin_triangle.w < entries[b].origin_triangle.w;
   });
-  const auto point = [](uvec4 bits) {
-    return vec3(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z));
-  };
   pvs.triangles.reserve(order.size());
   pvs.witnesses.reserve(order.size());
   for (const uint32_t i : order) {
+    const Ray ray = entryRay(entries[i]);
     pvs.triangles.push_back(entries[i].origin_triangle.w);
-    pvs.witnesses.push_back(
-        {point(entries[i].origin_triangle), point(entries[i].direction_stage), entries[i].direction_stage.w});
+    pvs.witnesses.push_back({xyz3(ray.origin), xyz3(ray.direction), entries[i].direction_stage.w});
   }
 }
 
