@@ -92,8 +92,7 @@ void declareSampling(CLI::App& command, BakeParams& params) {
       .add_option_function<std::string>(
           "--order", [&params](const std::string& name) { params.order = *orderOf(name); },
           "yield: the kind of ray that finds most goes first; queue: reverse rays of a batch follow its "
-          "border "
-          "rays, as in the thesis")
+          "border rays, as in the thesis")
       ->check(CLI::IsMember({"yield", "queue"}))
       ->type_name("NAME")
       ->default_str(orderName(params.order))
