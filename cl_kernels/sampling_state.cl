@@ -97,15 +97,6 @@ static inline Ray borderRayAt(BorderBatch batch, StageParams params, uint entry,
   return borderRay(edges[borderSide(k, slUint(edges->bisector.w))], k, origin);
 }
 
-/// The triangle of an entry and its border ray k, whose polygon has so many samples an edge.
-static inline Ray entryBorderRay(Corners t, float3 origin, StageParams params, uint k, uint samples) {
-  if (!isGvs(params)) {
-    return borderRay(borderEdge(t.a, t.b, t.c, borderSide(k, samples), origin, params), k, origin);
-  }
-  const float3 from = gvsVertex(t.a, t.b, t.c, gvsFirstVertex(k), origin, params);
-  return rayTo(origin, gvsPoint(from, gvsVertex(t.a, t.b, t.c, gvsSecondVertex(k), origin, params), k));
-}
-
 /// The item of a discontinuity. number: its running number in the cell.
 static inline ReverseItem reverseItemOf(SceneRef scene, __global const uint* record_of,
                                         __global const PvsEntry* entries, __global const Face* faces,
@@ -113,7 +104,8 @@ static inline ReverseItem reverseItemOf(SceneRef scene, __global const uint* rec
   const uint4 ray = discontinuity.ray;
   const PvsEntry entry = entries[ray.x];
   const Corners t = triangleCorners(scene, record_of, entry.origin_triangle.w);
-  const Ray border = entryBorderRay(t, as_float4(entry.origin_triangle).xyz, params, ray.y, ray.w);
+  const float3 origin = as_float4(entry.origin_triangle).xyz;
+  const Ray border = polygonRay(t.a, t.b, t.c, ray.y, ray.w, origin, params);
   const float3 target = add3(border.origin.xyz, border.direction.xyz);
   uint mask = 0;
   for (uint f = 0; f < params.counts.w; ++f) mask |= (faceLooksAt(faces[f], target) ? 1u : 0u) << f;

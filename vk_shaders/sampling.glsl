@@ -100,14 +100,7 @@ ReverseItem reverseItemAt(uint place) {
   vec3 p1 = leafCorner(leaf, 1u);
   vec3 p2 = leafCorner(leaf, 2u);
   vec3 origin = borderOrigin(entry.origin_triangle);
-  Ray border;
-  if (isGvs(params)) {
-    vec3 first = gvsVertex(p0, p1, p2, gvsFirstVertex(ray.y), origin, params);
-    vec3 second = gvsVertex(p0, p1, p2, gvsSecondVertex(ray.y), origin, params);
-    border = rayTo(origin, gvsPoint(first, second, ray.y));
-  } else {
-    border = borderRay(borderEdge(p0, p1, p2, borderSide(ray.y, ray.w), origin, params), ray.y, origin);
-  }
+  Ray border = polygonRay(p0, p1, p2, ray.y, ray.w, origin, params);
   vec3 target = add3(xyz3(border.origin), xyz3(border.direction));
   uint64 number = SL_LAUNCH.items_before + place;
   uint mask = 0u;

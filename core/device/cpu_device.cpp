@@ -54,17 +54,8 @@ class CpuDevice final : public Device {
 
   /// Generator of the reverse rays of the last traceReverse; excluded ones have no direction.
   auto reverseRays() const {
-    return [this, place = kNoTriangle, item = ReverseItem{}](uint32_t number) mutable {
-      const uint32_t per_item = reverseRayCount(params_);
-      const uint32_t k = number % per_item;
-      if (place != number / per_item) {
-        place = number / per_item;
-        const uint32_t index = reverse_first_ + place;
-        item =
-            reverseItemOf(scene_, faces_, entries_, discontinuities_[index], items_before_ + index, params_);
-      }
-      return BatchRay{reverseRayOf(item, faces_, k, params_), number + 1};
-    };
+    return ReverseRays(scene_, faces_, entries_, std::span(discontinuities_).subspan(reverse_first_),
+                       items_before_ + reverse_first_, params_);
   }
 
  public:

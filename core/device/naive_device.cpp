@@ -23,16 +23,8 @@ class NaiveDevice final : public Device {
   }
 
   auto reverseRays(uint32_t first) const {
-    return [this, first, place = kNoTriangle, item = ReverseItem{}](uint32_t number) mutable {
-      const uint32_t per_item = reverseRayCount(params_);
-      if (place != number / per_item) {
-        place = number / per_item;
-        const uint32_t index = first + place;
-        item =
-            reverseItemOf(scene_, faces_, entries_, discontinuities_[index], items_before_ + index, params_);
-      }
-      return BatchRay{reverseRayOf(item, faces_, number % per_item, params_), number + 1};
-    };
+    return ReverseRays(scene_, faces_, entries_, std::span(discontinuities_).subspan(first),
+                       items_before_ + first, params_);
   }
 
  public:

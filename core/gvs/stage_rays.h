@@ -74,12 +74,9 @@ inline BorderEdge borderEdgeOf(const Scene& scene, const PvsEntry& entry, uint32
 /// Border ray k of an entry. samples: borderSamplesOf.
 inline Ray borderRayOf(const Scene& scene, const PvsEntry& entry, uint32_t k, uint32_t samples,
                        const StageParams& params) {
-  const vec3 origin = entryOrigin(entry);
-  const auto side = [&](uint32_t s) { return borderEdgeOf(scene, entry, s, params); };
-  if (!isGvs(params)) return borderRay(side(borderSide(k, samples)), k, origin);
-  const uint32_t first = gvsFirstVertex(k), second = gvsSecondVertex(k);
-  return rayTo(origin,
-               gvsPoint(gvsVertexOf(side(first / 3), first), gvsVertexOf(side(second / 3), second), k));
+  const uint32_t triangle = entry.origin_triangle.w;
+  return polygonRay(cornerOf(scene, triangle, 0), cornerOf(scene, triangle, 1), cornerOf(scene, triangle, 2),
+                    k, samples, entryOrigin(entry), params);
 }
 
 /// How many border rays the entries have before each of them, and one number more: in all.
@@ -211,5 +208,41 @@ inline Ray reverseRayOf(const ReverseItem& item, std::span<const Face> faces, ui
   for (size_t f = 0; f < faces.size() && !hasDirection(ray); ++f) ray = gvsReverseRay(item, faces[f], k);
   return ray;
 }
+
+/// The reverse rays of discontinuities by number, reverseRayCount each. Remembers the last item, so call it
+/// with ascending numbers.
+class ReverseRays {
+ public:
+  /// entries: the whole list; first_number: running number of the first discontinuity in the cell.
+  ReverseRays(const Scene& scene, std::span<const Face> faces, std::span<const PvsEntry> entries,
+              std::span<const Discontinuity> discontinuities, uint64_t first_number,
+              const StageParams& params)
+      : scene_(&scene),
+        faces_(faces),
+        entries_(entries),
+        discontinuities_(discontinuities),
+        first_number_(first_number),
+        params_(&params) {}
+
+  BatchRay operator()(uint32_t number) {
+    const uint32_t per_item = reverseRayCount(*params_);
+    if (place_ != number / per_item) {
+      place_ = number / per_item;
+      item_ = reverseItemOf(*scene_, faces_, entries_, discontinuities_[place_], first_number_ + place_,
+                            *params_);
+    }
+    return {reverseRayOf(item_, faces_, number % per_item, *params_), number + 1};
+  }
+
+ private:
+  const Scene* scene_;
+  std::span<const Face> faces_;
+  std::span<const PvsEntry> entries_;
+  std::span<const Discontinuity> discontinuities_;
+  uint64_t first_number_;
+  const StageParams* params_;
+  uint32_t place_ = kNoTriangle;  ///< which discontinuity's item there is
+  ReverseItem item_{};
+};
 
 }  // namespace sightline

@@ -77,6 +77,16 @@ SL_FUNC vec3 gvsPoint(vec3 first, vec3 second, uint position) {
   return eighths == 0u ? first : add3(scale3(first, 1.0f - t), scale3(second, t));
 }
 
+/// Ray k to the border polygon of triangle p0 p1 p2, by the method of the parameters. samples: borderSamples.
+SL_FUNC Ray polygonRay(vec3 p0, vec3 p1, vec3 p2, uint k, uint samples, vec3 origin, StageParams params) {
+  if (!isGvs(params)) {
+    return borderRay(borderEdge(p0, p1, p2, borderSide(k, samples), origin, params), k, origin);
+  }
+  vec3 first = gvsVertex(p0, p1, p2, gvsFirstVertex(k), origin, params);
+  vec3 second = gvsVertex(p0, p1, p2, gvsSecondVertex(k), origin, params);
+  return rayTo(origin, gvsPoint(first, second, k));
+}
+
 /// Where the ray meets the plane of triangle p0 p1 p2, in units of its direction; 0 where it runs beside it.
 SL_FUNC float meetsPlane(Ray ray, vec3 p0, vec3 p1, vec3 p2) {
   vec3 normal = cross3(sub3(p1, p0), sub3(p2, p0));
