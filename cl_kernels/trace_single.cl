@@ -1,4 +1,9 @@
 // One ray through the 2-wide tree: the way of GPUs, where a work item is a ray.
+//
+// Based on: Aila, Laine, Understanding the Efficiency of Ray Traversal on GPUs, HPG 2009 ("speculative
+// while-while"): a ray that comes to a leaf goes on through inner nodes until it meets a second one, so that
+// the rays of a group that run in step intersect triangles together. Which hit is nearest does not depend on
+// the order (core/shared/triangle.h).
 #include "cl_kernels/scene.cl"
 
 static inline void intersectRecord(__global const TriangleRecord* record, ShearedRay ray, Hit* best) {
@@ -17,46 +22,79 @@ static inline void intersectRecord(__global const TriangleRecord* record, Sheare
   }
 }
 
+/// Where a walk goes on: an inner node by its index, or a leaf: the bit, its references less one (3 bits), the
+/// first of them (28 bits; kMostGpuReferences of core/device/trace_layout.h).
+#define SL_LEAF 0x80000000u
+#define SL_NO_LEAF 0u
+#define SL_WALK_END 0xffffffffu
+
+static inline bool isLeaf(uint place) {
+  return (place & SL_LEAF) != 0 && place != SL_WALK_END;
+}
+
+static inline uint placeOfChild(const BvhNode2* node, uint i) {
+  return node->count[i] == 0 ? node->child[i] : SL_LEAF | (node->count[i] - 1) << 28 | node->child[i];
+}
+
+/// Takes the last place off the stack that may have a hit as near as t. x: bits of the distance, y: place; at
+/// the bottom lies the end of the walk.
+static inline uint popPlace(const uint2* stack, uint* size, float t) {
+  uint2 entry;
+  do {
+    entry = stack[--*size];
+  } while (as_float(entry.x) > t);
+  return entry.y;
+}
+
+static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best) {
+  const uint first = leaf & 0x0fffffffu;
+  const uint count = (leaf >> 28 & 7u) + 1;
+  for (uint i = 0; i < count; ++i) intersectRecord(&scene.triangles[first + i], ray, best);
+}
+
 static Hit traceRay(SceneRef scene, Ray ray) {
   Hit best = missHit();
   if (!hasDirection(ray)) return best;
-  BoxRay box_ray = boxRay(ray, scene.reach);
-  ShearedRay sheared = shearRay(ray);
-  uint2 stack[SL_STACK_SIZE];  // x: bits of the distance, y: node
-  uint size = 0;
-  uint node_index = 0;
-  for (;;) {
-    BvhNode2 node = scene.nodes[node_index];
-    float2 range0 =
-        intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
-    float2 range1 =
-        intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
-    bool meets0 = range0.x <= min(range0.y, best.t);
-    bool meets1 = range1.x <= min(range1.y, best.t);
-    if (meets0 && node.count[0] > 0) {
-      for (uint i = 0; i < node.count[0]; ++i)
-        intersectRecord(&scene.triangles[node.child[0] + i], sheared, &best);
-      meets0 = false;
+  const BoxRay box_ray = boxRay(ray, scene.reach);
+  const ShearedRay sheared = shearRay(ray);
+  uint2 stack[SL_STACK_SIZE + 1];
+  stack[0] = (uint2)(0u, SL_WALK_END);
+  uint size = 1;
+  uint place = 0;
+  uint leaf = SL_NO_LEAF;  // waits for its triangles to be intersected
+  while (place != SL_WALK_END) {
+    while ((place & SL_LEAF) == 0) {
+      const BvhNode2 node = scene.nodes[place];
+      const float2 range0 =
+          intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
+      const float2 range1 =
+          intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
+      const bool meets0 = range0.x <= min(range0.y, best.t);
+      const bool meets1 = range1.x <= min(range1.y, best.t);
+      const uint place0 = placeOfChild(&node, 0);
+      const uint place1 = placeOfChild(&node, 1);
+      if (meets0 && meets1) {
+        const bool swap = range1.x < range0.x;
+        stack[size++] = swap ? (uint2)(as_uint(range0.x), place0) : (uint2)(as_uint(range1.x), place1);
+        place = swap ? place1 : place0;
+      } else if (meets0 || meets1) {
+        place = meets0 ? place0 : place1;
+      } else {
+        place = popPlace(stack, &size, best.t);
+      }
+      if (isLeaf(place) && leaf == SL_NO_LEAF) {
+        leaf = place;
+        place = popPlace(stack, &size, best.t);
+      }
     }
-    if (meets1 && node.count[1] > 0) {
-      for (uint i = 0; i < node.count[1]; ++i)
-        intersectRecord(&scene.triangles[node.child[1] + i], sheared, &best);
-      meets1 = false;
-    }
-    if (meets0 && meets1) {
-      bool swap = range1.x < range0.x;
-      stack[size++] =
-          swap ? (uint2)(as_uint(range0.x), node.child[0]) : (uint2)(as_uint(range1.x), node.child[1]);
-      node_index = swap ? node.child[1] : node.child[0];
-    } else if (meets0 || meets1) {
-      node_index = meets0 ? node.child[0] : node.child[1];
-    } else {
-      uint2 entry;
-      do {
-        if (size == 0) return best;
-        entry = stack[--size];
-      } while (as_float(entry.x) > best.t);
-      node_index = entry.y;
+    while (leaf != SL_NO_LEAF) {
+      intersectLeaf(scene, leaf, sheared, &best);
+      leaf = SL_NO_LEAF;
+      if (isLeaf(place)) {
+        leaf = place;
+        place = popPlace(stack, &size, best.t);
+      }
     }
   }
+  return best;
 }

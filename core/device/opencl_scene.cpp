@@ -42,23 +42,22 @@ uint32_t raysPerItem(const OpenClContext& context) {
   return context.isCpu() ? 8 : 1;
 }
 
-std::string traceOptions(const OpenClContext& context) {
-  return "-DSL_PACKET=" + std::to_string(raysPerItem(context));
+std::string traceOptions(uint32_t rays_per_item) {
+  return "-DSL_PACKET=" + std::to_string(rays_per_item);
 }
 
-OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh) {
-  return uploadScene(context, scene, bvh, 0);
-}
-
-OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t id_offset) {
+OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t rays_per_item,
+                        uint32_t id_offset) {
   checkTraceable(bvh);
+  const bool packets = rays_per_item > 1;
+  if (!packets) checkSingleRays(bvh.references.size());
   OpenClScene result;
   result.reach = sceneReach(bvh.low, bvh.high);
   const uint64_t node_bytes = bvh.nodes2.size() * sizeof(BvhNode2);
   result.nodes = context.buffer(node_bytes, "nodes of the tree");
   context.write(result.nodes, bvh.nodes2.data(), node_bytes);
-  result.triangles = context.isCpu() ? uploadTriangles<TriangleRecord>(context, scene, bvh, id_offset)
-                                     : uploadTriangles<TriangleRecordGpu>(context, scene, bvh, id_offset);
+  result.triangles = packets ? uploadTriangles<TriangleRecord>(context, scene, bvh, id_offset)
+                             : uploadTriangles<TriangleRecordGpu>(context, scene, bvh, id_offset);
   return result;
 }
 

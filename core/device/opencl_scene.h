@@ -7,9 +7,8 @@
 
 namespace sightline {
 
-/// A scene and its tree on an OpenCL device, in the layout that suits its kind: the 2-wide tree for packets
-/// of eight rays on CPUs, for single rays elsewhere. Kernels with SL_SCENE_ARGS take the three values in
-/// order:
+/// A scene and its tree on an OpenCL device: the 2-wide tree, and triangles as packets of eight rays or as
+/// single rays read them fastest. Kernels with SL_SCENE_ARGS take the three values in order:
 ///   context.launch(kernel, items, local, scene.nodes, scene.triangles, scene.reach, ...)
 struct OpenClScene {
   ClBuffer nodes;
@@ -17,17 +16,17 @@ struct OpenClScene {
   float reach = 0;  ///< sceneReach of the bounds
 };
 
-/// Rays that a work item traces on the device: SL_PACKET of the program.
+/// Rays that a work item traces where the device is fastest: packets of 8 on CPUs, 1 elsewhere.
 uint32_t raysPerItem(const OpenClContext& context);
 
-/// Build options that the trace kernels need: pass to OpenClContext::build, with others.
-std::string traceOptions(const OpenClContext& context);
+/// Build options that the trace kernels need: pass to OpenClContext::build, with others. rays_per_item: 8
+/// or 1.
+std::string traceOptions(uint32_t rays_per_item);
 
-/// Uploads in pieces, so that the host needs little memory besides scene and tree. Throws Error, also when
-/// the tree is too deep or the device's memory too small.
-OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh);
-
-/// For tests: the same with 2^24 + 1, say, added to all ids.
-OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t id_offset);
+/// Uploads in pieces, so that the host needs little memory besides scene and tree. rays_per_item: as of
+/// traceOptions. id_offset is for tests: 2^24 + 1, say, added to all ids. Throws Error, also when the tree is
+/// too deep or the device's memory too small.
+OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t rays_per_item,
+                        uint32_t id_offset = 0);
 
 }  // namespace sightline

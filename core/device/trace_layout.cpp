@@ -45,6 +45,14 @@ void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<T
   packAll(scene, bvh, first, out);
 }
 
+void checkSingleRays(uint64_t references) {
+  if (references <= kMostGpuReferences) return;
+  throw Error(fmt::format(
+      "{} triangles in the leaves of the tree, this OpenCL device takes {} at most: split the scene, or take "
+      "--device cpu",
+      references, kMostGpuReferences));
+}
+
 void checkTraceable(const Bvh& bvh) {
   if (bvh.nodes2.empty() || bvh.nodes8.empty()) {
     throw Error("the tree has no nodes: build it with buildBvh from at least one triangle");

@@ -27,6 +27,12 @@ static_assert(sizeof(TriangleRecordGpu) == 48);
 void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecord> out);
 void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecordGpu> out);
 
+/// Triangles in leaves (Bvh::references) that a single ray's walk can number (cl_kernels/trace_single.cl).
+constexpr uint64_t kMostGpuReferences = (1u << 28) - 8;
+
+/// Throws Error if there are more than kMostGpuReferences.
+void checkSingleRays(uint64_t references);
+
 /// Throws Error if the tree is deeper than kMaxDepth or has no nodes: a traversal's stack would overflow.
 void checkTraceable(const Bvh& bvh);
 

@@ -76,6 +76,14 @@ TEST_P(Determinism, AnyWorkGroupSize) {
   }
 }
 
+TEST_P(Determinism, PacketsAndSingleRays) {
+  for (const uint32_t rays : {8u, 1u}) {
+    DeviceOptions options;
+    options.rays_per_item = rays;
+    expectSame(bakeOn("opencl", scene_, cell_, params(), options), "rays an item");
+  }
+}
+
 TEST_P(Determinism, HashSetAndArray) {
   for (const char* name : {"cpu", "opencl"}) {
     DeviceOptions options;

@@ -11,13 +11,14 @@
 namespace sightline {
 namespace {
 
-/// Skips where there is no OpenCL device at all; build.sh installs PoCL, so that CI never skips.
-class OpenClTrace : public testing::Test {
+/// With packets of eight rays and with single rays, as CPUs and GPUs trace them. Skips where there is no
+/// OpenCL device at all; build.sh installs PoCL, so that CI never skips.
+class OpenClTrace : public testing::TestWithParam<uint32_t> {
  protected:
   void SetUp() override {
     if (listOpenClDevices().empty()) GTEST_SKIP() << "no OpenCL device";
     context_ = std::make_unique<OpenClContext>("opencl");
-    context_->build(traceOptions(*context_));
+    context_->build(traceOptions(GetParam()));
   }
 
   std::vector<Hit> trace(const OpenClScene& scene, const std::vector<Ray>& rays, uint32_t local) {
@@ -25,7 +26,7 @@ class OpenClTrace : public testing::Test {
     const ClBuffer ray_buffer = context_->buffer(rays.size() * sizeof(Ray), "rays");
     const ClBuffer hit_buffer = context_->buffer(rays.size() * sizeof(Hit), "hits");
     context_->write(ray_buffer, rays.data(), rays.size() * sizeof(Ray));
-    const uint32_t per_item = raysPerItem(*context_), count = uint32_t(rays.size());
+    const uint32_t per_item = GetParam(), count = uint32_t(rays.size());
     context_->launch(kernel, (count + per_item - 1) / per_item, local, scene.nodes, scene.triangles,
                      scene.reach, ray_buffer, hit_buffer, count);
     std::vector<Hit> hits(count);
@@ -36,12 +37,12 @@ class OpenClTrace : public testing::Test {
   std::unique_ptr<OpenClContext> context_;
 };
 
-TEST_F(OpenClTrace, GivesTheHitsOfTheReferenceWhateverTheTree) {
+TEST_P(OpenClTrace, GivesTheHitsOfTheReferenceWhateverTheTree) {
   for (const TraceCase& c : traceCases()) {
     for (const BvhConfig& config : traceConfigs()) {
       const Bvh bvh = buildBvh(c.scene.positions, c.scene.triangles, config);
       const CpuTracer reference(c.scene, bvh);
-      const OpenClScene scene = uploadScene(*context_, c.scene, bvh);
+      const OpenClScene scene = uploadScene(*context_, c.scene, bvh, GetParam());
       const std::vector<Hit> hits = trace(scene, c.rays, 8);
       for (size_t i = 0; i < hits.size(); ++i) {
         ASSERT_PRED_FORMAT2(sameHit, hits[i], reference.trace(c.rays[i]))
@@ -52,12 +53,12 @@ TEST_F(OpenClTrace, GivesTheHitsOfTheReferenceWhateverTheTree) {
   }
 }
 
-TEST_F(OpenClTrace, IdsPast2To24StayWhole) {
+TEST_P(OpenClTrace, IdsPast2To24StayWhole) {
   const TraceCase& c = traceCases().front();
   const Bvh bvh = buildBvh(c.scene.positions, c.scene.triangles);
   const CpuTracer reference(c.scene, bvh);
   const uint32_t offset = (1u << 24) + 1;
-  const std::vector<Hit> hits = trace(uploadScene(*context_, c.scene, bvh, offset), c.rays, 8);
+  const std::vector<Hit> hits = trace(uploadScene(*context_, c.scene, bvh, GetParam(), offset), c.rays, 8);
   for (size_t i = 0; i < hits.size(); ++i) {
     Hit expected = reference.trace(c.rays[i]);
     if (expected.triangle != kNoTriangle) expected.triangle += offset;
@@ -65,11 +66,11 @@ TEST_F(OpenClTrace, IdsPast2To24StayWhole) {
   }
 }
 
-TEST_F(OpenClTrace, SegmentsGiveEachRayItsHit) {
+TEST_P(OpenClTrace, SegmentsGiveEachRayItsHit) {
   const TraceCase& c = traceCases().front();
   const Bvh bvh = buildBvh(c.scene.positions, c.scene.triangles);
   const CpuTracer reference(c.scene, bvh);
-  const OpenClScene scene = uploadScene(*context_, c.scene, bvh);
+  const OpenClScene scene = uploadScene(*context_, c.scene, bvh, GetParam());
   Face face{};
   face.corner = vec4(-0.5f, -0.5f, 0, 0);
   face.edge_u = face.axis_u = vec4(1, 0, 0, 0);
@@ -80,7 +81,7 @@ TEST_F(OpenClTrace, SegmentsGiveEachRayItsHit) {
   const RandomSegment segment = makeRandomSegment(0, 5'000'000'000, count, 1);
   const uint64_t slots = slotCount(segment);
   const ClBuffer buffer = context_->buffer(slots * sizeof(Hit), "hits");
-  const uint64_t per_item = raysPerItem(*context_);
+  const uint64_t per_item = GetParam();
   context_->launch(context_->kernel("traceSegmentKernel"), (slots + per_item - 1) / per_item, 8, scene.nodes,
                    scene.triangles, scene.reach, segment, face, shifts, buffer);
   std::vector<Hit> hits(slots);
@@ -93,6 +94,9 @@ TEST_F(OpenClTrace, SegmentsGiveEachRayItsHit) {
   }
   EXPECT_EQ(rays, count);
 }
+
+INSTANTIATE_TEST_SUITE_P(RaysPerItem, OpenClTrace, testing::Values(8u, 1u),
+                         [](const auto& rays) { return rays.param == 1 ? "single" : "packets"; });
 
 }  // namespace
 }  // namespace sightline

@@ -129,10 +129,10 @@ testing::AssertionResult reachesTheMesh(const Hit& hit, const Ray& ray, const Pl
   return testing::AssertionSuccess();
 }
 
-void traceOnOpenCl(const Scene& mesh) {
+void traceOnOpenCl(const Scene& mesh, uint32_t per_item) {
   if (listOpenClDevices().empty()) GTEST_SKIP() << "no OpenCL device";
   OpenClContext context("opencl");
-  context.build(traceOptions(context));
+  context.build(traceOptions(per_item));
   const ClKernel kernel = context.kernel("traceRaysKernel");
   std::vector<Ray> rays(kRays);
   std::vector<Hit> hits(kRays);
@@ -140,10 +140,10 @@ void traceOnOpenCl(const Scene& mesh) {
   const ClBuffer hit_buffer = context.buffer(kRays * sizeof(Hit), "hits");
   for (const Place& place : kPlaces) {
     const Scene scene = moved(mesh, place);
-    const OpenClScene uploaded = uploadScene(context, scene, buildBvh(scene.positions, scene.triangles));
+    const OpenClScene uploaded =
+        uploadScene(context, scene, buildBvh(scene.positions, scene.triangles), per_item);
     tbb::parallel_for(0u, kRays, [&](uint32_t i) { rays[i] = aimedRay(scene, place, i); });
     context.write(ray_buffer, rays.data(), kRays * sizeof(Ray));
-    const uint32_t per_item = raysPerItem(context);
     context.launch(kernel, (kRays + per_item - 1) / per_item, 8, uploaded.nodes, uploaded.triangles,
                    uploaded.reach, ray_buffer, hit_buffer, kRays);
     context.read(hit_buffer, hits.data(), kRays * sizeof(Hit));
@@ -151,11 +151,17 @@ void traceOnOpenCl(const Scene& mesh) {
   }
 }
 
-TEST(Watertight, SphereOnOpenCl) {
-  traceOnOpenCl(makeSphere(64, 100));
+TEST(Watertight, SphereOnOpenClInPackets) {
+  traceOnOpenCl(makeSphere(64, 100), 8);
 }
-TEST(Watertight, CubeOnOpenCl) {
-  traceOnOpenCl(makeCube(30));
+TEST(Watertight, SphereOnOpenClRayByRay) {
+  traceOnOpenCl(makeSphere(64, 100), 1);
+}
+TEST(Watertight, CubeOnOpenClInPackets) {
+  traceOnOpenCl(makeCube(30), 8);
+}
+TEST(Watertight, CubeOnOpenClRayByRay) {
+  traceOnOpenCl(makeCube(30), 1);
 }
 
 TEST(Watertight, SphereAndCubeOnTheProcessor) {
