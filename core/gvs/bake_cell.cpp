@@ -20,8 +20,9 @@
 namespace sightline {
 namespace {
 
-/// Rays of one random launch at most: a second or so on a slow device, for progress and interruption.
-constexpr uint32_t kRandomLaunchRays = 1u << 22;
+/// Rays of one random launch at most: a second or so on a processor, for progress and interruption; enough to
+/// keep a GPU busy.
+constexpr uint32_t kRandomLaunchRays = 1u << 22, kRandomLaunchRaysGpu = 1u << 24;
 
 /// After a test of the error, so many times its rays are traced before the next one: tests take a fifth of
 /// all rays at most. Those that fail soon, while the error is large, hold up nothing.
@@ -42,6 +43,7 @@ class CellBake {
         cell_index_(cell_index),
         hooks_(hooks),
         face_rays_(raysByArea(faces_, params.n_rand)),
+        random_launch_rays_(device.info().on_cpu ? kRandomLaunchRays : kRandomLaunchRaysGpu),
         yield_(params.batch_rays) {
     stage_params_ =
         makeStageParams(params, faces_.size(), haltonShifts(params.seed, cell_index, RandomUse::kSampling));
@@ -147,7 +149,7 @@ class CellBake {
     uint32_t ray_index = 1;
     for (uint32_t f = 0; f < counts.size(); ++f) {
       for (uint32_t left = counts[f]; left > 0;) {
-        const uint32_t count = std::min(left, kRandomLaunchRays);
+        const uint32_t count = std::min(left, random_launch_rays_);
         if (!launch(makeRandomSegment(f, first, count, ray_index))) return false;
         first += count;
         ray_index += count;
@@ -225,13 +227,19 @@ class CellBake {
     return true;
   }
 
+  /// Rays of the next border or reverse batch at most: no more than all before it, so that a cell runs past a
+  /// limit by less than the limit.
+  uint32_t batchRays() const {
+    return static_cast<uint32_t>(std::clamp<uint64_t>(rays_, kFewestBatchRays, params_.batch_rays));
+  }
+
   /// Discontinuities whose reverse rays are still to be traced.
   uint32_t waiting() const { return discontinuities_ - reversed_; }
 
   /// A batch of border rays. false: a limit was reached.
   bool border() {
     const auto start = Clock::now();
-    const BorderBatch batch = device_.traceBorder(bordered_, params_.batch_rays);
+    const BorderBatch batch = device_.traceBorder(bordered_, batchRays());
     bordered_ += batch.entries;
     if (reverseRayCount(stage_params_) == 0) {
       device_.dropDiscontinuities();
@@ -250,7 +258,7 @@ class CellBake {
   /// A batch of reverse rays of those that wait. false: a limit was reached.
   bool reverse() {
     const auto start = Clock::now();
-    const uint32_t items_per_batch = std::max(1u, params_.batch_rays / reverseRayCount(stage_params_));
+    const uint32_t items_per_batch = std::max(1u, batchRays() / reverseRayCount(stage_params_));
     const uint32_t count = std::min(items_per_batch, waiting());
     device_.traceReverse(reversed_, count);
     reversed_ += count;
@@ -336,6 +344,7 @@ class CellBake {
   StageParams stage_params_{};
   CellStats stats_;
   Clock::time_point start_ = Clock::now();
+  uint32_t random_launch_rays_;
   uint64_t next_point_ = 0;  ///< of the Halton sequence; never restarts
   float near_distance_ = 0;  ///< of hemicubes
   uint64_t rays_ = 0;

@@ -33,7 +33,8 @@ struct BakeParams {
   uint32_t quiet_iterations = 1;        ///< ... in this many iterations one after the other
   uint64_t max_rays = 0;                ///< stop a cell after so many rays (0: no limit)
   double max_seconds = 0;          ///< stop a cell after so many seconds (0: no limit; not deterministic)
-  uint32_t batch_rays = 1u << 22;  ///< rays of a border or reverse batch at most, 4096 or more
+  uint32_t batch_rays = 1u << 24;  ///< rays of a border or reverse batch at most, 4096 or more; nor has a
+                                   ///< batch more than the cell traced before it
   uint64_t validation_rays = 10'000'000;  ///< fresh random rays after each cell that measure the miss rate
   uint64_t seed = 1;
   uint32_t raster_resolution = 1000;  ///< method raster only: pixels along an edge of a hemicube's front side
@@ -43,6 +44,7 @@ struct BakeParams {
 };
 
 inline constexpr double kSmallestTargetError = 1e-10;
+inline constexpr uint32_t kFewestBatchRays = 4096;
 
 /// Counts of one stage of one cell.
 struct StageStats {
