@@ -92,7 +92,7 @@ class CpuDevice final : public Device {
         [&](const BatchRay& ray, const Hit& hit, SetRef set) { insertHit(set, hit.triangle, ray.index); });
   }
 
-  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
     border_first_ = first;
     std::span<const PvsEntry> pending = std::span(entries_).subspan(first);
     pending = pending.first(std::min<size_t>(pending.size(), mostBorderEntries(most_rays, params_)));
@@ -119,7 +119,7 @@ class CpuDevice final : public Device {
       rays_ += launch(
           total, [&] { return borderRays(); }, take);
     }
-    return {count, appendDiscontinuities(count)};
+    return {count, listing ? appendDiscontinuities(count) : 0};
   }
 
   void dropDiscontinuities() override {

@@ -76,9 +76,9 @@ class Device {
   virtual void traceRandom(const RandomSegment& segment) = 0;
 
   /// Border rays of the list's entries from `first`: of as many blocks of kBorderBlock entries as have at
-  /// most `most_rays` rays, one block at least; the list may end within the last. Appends the discontinuities
-  /// that get reverse rays to the cell's list of them.
-  virtual BorderBatch traceBorder(uint32_t first, uint32_t most_rays) = 0;
+  /// most `most_rays` rays, one block at least; the list may end within the last. listing: appends the
+  /// discontinuities that get reverse rays to the cell's list of them.
+  virtual BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) = 0;
 
   /// Reverse rays of the discontinuities first .. first + count - 1 of those appended since beginCell or
   /// dropDiscontinuities: reverseRayCount rays each at most.

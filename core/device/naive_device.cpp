@@ -48,7 +48,7 @@ class NaiveDevice final : public Device {
         [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
   }
 
-  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
     const std::vector<PvsEntry> pending = entriesFrom(first, mostBorderEntries(most_rays, params_));
     std::vector<uint64_t> starts = borderStarts(scene_, pending, params_);
     const uint32_t count = borderBatchEntries(starts, most_rays);
@@ -63,7 +63,7 @@ class NaiveDevice final : public Device {
         },
         [&](const BatchRay& ray, const Hit& hit) {
           insert(hit.triangle, ray);
-          if (!isDiscontinuity(ray.ray, hit, params_)) return;
+          if (!listing || !isDiscontinuity(ray.ray, hit, params_)) return;
           while (starts[entry + 1] < ray.index) ++entry;
           const uint32_t samples = borderSamplesOf(scene_, pending[entry], params_);
           const uint32_t k = batch.rayOf(ray.index - 1, entry), place = borderPlace(k, samples);

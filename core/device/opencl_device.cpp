@@ -100,7 +100,7 @@ class OpenClDevice final : public Device {
     traceUntilItFits([&] { launch(random_, slots, faces_, params_, segment, counters_); });
   }
 
-  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
     const uint32_t total = beginBorderBatch(first, most_rays);
     const uint32_t words = (total + 31) / 32;
     border_hits_.reserve(context_, uint64_t(total) * 4, "hits of border rays");
@@ -114,10 +114,11 @@ class OpenClDevice final : public Device {
       } else {
         launchOverBorder(border_, total, border_hits_.buffer, bits_.buffer, counters_);
       }
+      if (!listing) return;
       kept = thinDiscontinuities(words);
       countBits(*kept, words, block_counts_, kDiscontinuityCounter);
     });
-    return {border_count_, appendDiscontinuities(*kept, words)};
+    return {border_count_, listing ? appendDiscontinuities(*kept, words) : 0};
   }
 
   void traceReverse(uint32_t first, uint32_t count) override {

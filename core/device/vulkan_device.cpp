@@ -81,10 +81,10 @@ class VulkanDevice final : public Device {
     traceUntilItFits([&] { runner_.run(tracing(random_, "trace_random"), slots); });
   }
 
-  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
     const uint32_t total = beginBorderBatch(first, most_rays);
     const uint32_t words = (total + 31) / 32;
-    const bool thin = !isGvs(launch_.params) && launch_.params.method.y > 1;
+    const bool thin = listing && !isGvs(launch_.params) && launch_.params.method.y > 1;
     reserve(border_hits_, launch_.border_hits, uint64_t(total) * 4, "hits of border rays");
     reserve(bits_, launch_.bits, uint64_t(words) * 4, "bits of discontinuities");
     if (thin) reserve(kept_bits_, launch_.kept_bits, uint64_t(words) * 4, "bits of discontinuities");
@@ -93,15 +93,15 @@ class VulkanDevice final : public Device {
     const uint32_t found = traceUntilItFits([&] {
       traceBorderRays(launch_.border_count, total);
       if (thin) runner_.run(thin_, words);
-      countBits(thin ? kept_bits_ : bits_, words);
+      if (listing) countBits(thin ? kept_bits_ : bits_, words);
     });
-    if (found > 0) {
+    if (listing && found > 0) {
       writeIndices(found, indices_, launch_.indices, "indices of discontinuities");
       reserveDiscontinuities(uint64_t(launch_.waiting) + found);
       runner_.run(append_discontinuities_, found);
       launch_.waiting += found;
     }
-    return {launch_.border_count, found};
+    return {launch_.border_count, listing ? found : 0};
   }
 
   void dropDiscontinuities() override {

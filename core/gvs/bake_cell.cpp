@@ -28,10 +28,6 @@ constexpr uint32_t kRandomLaunchRays = 1u << 22, kRandomLaunchRaysGpu = 1u << 24
 /// all rays at most. Those that fail soon, while the error is large, hold up nothing.
 constexpr uint64_t kRaysBetweenTests = 4;
 
-/// When the device has listed so many discontinuities (512 MiB there), all of them get their reverse rays
-/// before more are listed: the list shrinks only when it is empty.
-constexpr uint32_t kMostListed = 1u << 25;
-
 /// One cell's bake in progress.
 class CellBake {
  public:
@@ -214,15 +210,15 @@ class CellBake {
   /// found fewer than T triangles leaves nothing.
   bool exploreByYield() {
     const double random_yield = double(iteration_new_) / params_.n_rand;
-    while (bordered_ < pvs_size_ || waiting() > 0) {
+    while (bordered_ < pvs_size_ || waiting() > 0 || unlisted_first_ < unlisted_end_) {
       const uint32_t entries = pvs_size_ - bordered_;
       const bool catching_up = entries > 0 && stats_.border.rays < stats_.random.rays;
       const double border_yield = entries > 0 ? yield_.border(entries) : -1;
       const double reverse_yield = waiting() > 0 ? yield_.reverse() : -1;
       const bool may_wait = iteration_new_ >= params_.threshold && !catching_up;
       if (may_wait && std::max(border_yield, reverse_yield) < random_yield) return true;
-      const bool to_border = (catching_up || border_yield >= reverse_yield) && discontinuities_ < kMostListed;
-      if (!(to_border ? border() : reverse())) return false;
+      const bool to_border = entries > 0 && (catching_up || border_yield >= reverse_yield);
+      if (!(to_border ? border() : waiting() > 0 ? reverse() : listAgain())) return false;
     }
     return true;
   }
@@ -238,21 +234,36 @@ class CellBake {
 
   /// A batch of border rays. false: a limit was reached.
   bool border() {
-    const auto start = Clock::now();
-    const BorderBatch batch = device_.traceBorder(bordered_, batchRays());
-    bordered_ += batch.entries;
-    if (reverseRayCount(stage_params_) == 0) {
-      device_.dropDiscontinuities();
-    } else {
-      discontinuities_ += batch.discontinuities;
-      discontinuities_total_ += batch.discontinuities;
-    }
+    const bool reverses = reverseRayCount(stage_params_) > 0;
+    const bool listing = reverses && discontinuities_ < hooks_.most_listed;
+    const uint32_t first = bordered_, found = pvs_size_;
     const uint64_t rays = rays_;
-    const uint32_t found = pvs_size_;
-    const bool more = finishLaunch(kStageBorder, stats_.border);
+    const uint32_t entries = borderBatch(first, listing);
+    yield_.bookBorder(entries, rays_ - rays, pvs_size_ - found);
+    bordered_ += entries;
+    if (reverses && !listing) {
+      if (unlisted_first_ == unlisted_end_) unlisted_first_ = first;
+      unlisted_end_ = bordered_;
+    }
+    return stats_.stop == StopReason::kConverged;
+  }
+
+  /// Border rays once more, of entries whose discontinuities found no room in the list, which is empty now.
+  /// false: a limit was reached.
+  bool listAgain() {
+    unlisted_first_ = std::min(unlisted_first_ + borderBatch(unlisted_first_, true), unlisted_end_);
+    return stats_.stop == StopReason::kConverged;
+  }
+
+  /// Traces and books a batch of border rays of the entries from `first`; returns the number of its entries.
+  uint32_t borderBatch(uint32_t first, bool listing) {
+    const auto start = Clock::now();
+    const BorderBatch batch = device_.traceBorder(first, batchRays(), listing);
+    discontinuities_ += batch.discontinuities;
+    discontinuities_total_ += batch.discontinuities;
+    finishLaunch(kStageBorder, stats_.border);
     close(kStageBorder, stats_.border, start);
-    yield_.bookBorder(batch.entries, rays_ - rays, pvs_size_ - found);
-    return more;
+    return batch.entries;
   }
 
   /// A batch of reverse rays of those that wait. false: a limit was reached.
@@ -354,6 +365,8 @@ class CellBake {
   uint32_t discontinuities_ = 0;        ///< that the device has listed ...
   uint32_t reversed_ = 0;               ///< ... and whose reverse rays have been traced
   uint64_t discontinuities_total_ = 0;  ///< of the cell
+  uint32_t unlisted_first_ = 0;  ///< entries bordered while the list of discontinuities was full: the ...
+  uint32_t unlisted_end_ = 0;    ///< ... range that holds them all
   ExplorationYield yield_;
   uint32_t iteration_new_ = 0;
   uint64_t next_test_ = 0;  ///< rays traced when the error is next tested against the target

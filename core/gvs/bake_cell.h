@@ -27,11 +27,13 @@ struct BakeProgress {
 /// Told about the bake; called on the caller's thread.
 using ProgressCallback = std::function<void(const BakeProgress&)>;
 
-/// What bakeCell may be asked for besides the set; nothing of it changes the set.
+/// What bakeCell may be asked for besides the set; nothing but most_listed changes the set.
 struct BakeHooks {
   ProgressCallback progress = {};
   const std::atomic<bool>* stop = nullptr;  ///< ends the bake with Interrupted when it becomes true
   BakeTrace* trace = nullptr;               ///< is replaced by how the set grew
+  uint32_t most_listed = 1u << 25;  ///< discontinuities that may wait (16 bytes each on the device) before no
+                                    ///< more are listed; for tests: another bound may change the set
 };
 
 /// Thrown by bakeCell when *stop became true: nothing of the cell is kept.

@@ -178,6 +178,26 @@ TEST_P(Methods, TheOrderDecidesWhenReverseRaysCome) {
   EXPECT_GT(borderBatchesInARow(Order::kYield), 4u);
 }
 
+/// Discontinuities that found no room in the list get their reverse rays too: their border rays come again.
+TEST_P(Methods, AFullListOfDiscontinuitiesLosesNone) {
+  const Scene scene = generateScene("city", 20'000, 7);
+  const ViewCell cell = generateCells("city", 20'000, 7).front();
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const auto device = makeDevice(GetParam(), scene, bvh);
+  BakeParams p = params(Method::kGvspp);
+  p.batch_rays = 1u << 13;
+  const CellPvs roomy = bakeCell(*device, scene, cell, 0, p);
+  const CellPvs full = bakeCell(*device, scene, cell, 0, p, {.most_listed = 1000});
+  EXPECT_GT(full.stats.border.rays, roomy.stats.border.rays * 5 / 4);
+  EXPECT_GT(full.stats.reverse.rays, roomy.stats.reverse.rays * 19 / 20);
+  EXPECT_NEAR(double(full.triangles.size()), double(roomy.triangles.size()),
+              0.01 * double(roomy.triangles.size()));
+  const auto reference = makeDevice("cpu", scene, bvh);
+  if (std::string(GetParam()) != "vulkan") {
+    EXPECT_EQ(full.triangles, bakeCell(*reference, scene, cell, 0, p, {.most_listed = 1000}).triangles);
+  }
+}
+
 /// The naive implementation gives the set of gvs++ with the same witnesses, in the same order.
 TEST_P(Methods, NaiveIsGvsppWithTheSetOnTheHost) {
   const Scene scene = generateScene("city", 20'000, 7);

@@ -37,8 +37,8 @@ class TimedDevice final : public Device {
     timed("trace random", [&] { inner_.traceRandom(segment); });
   }
   void dropDiscontinuities() override { inner_.dropDiscontinuities(); }
-  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
-    return timed("trace border", [&] { return inner_.traceBorder(first, most_rays); });
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
+    return timed("trace border", [&] { return inner_.traceBorder(first, most_rays, listing); });
   }
   void traceReverse(uint32_t first, uint32_t count) override {
     timed("trace reverse", [&] { inner_.traceReverse(first, count); });

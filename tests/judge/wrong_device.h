@@ -28,8 +28,8 @@ class WrongDevice final : public Device {
     device_->beginCell(faces, params);
   }
   void traceRandom(const RandomSegment& segment) override { device_->traceRandom(segment); }
-  BorderBatch traceBorder(uint32_t first, uint32_t most_rays) override {
-    return device_->traceBorder(first, most_rays);
+  BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
+    return device_->traceBorder(first, most_rays, listing);
   }
   void dropDiscontinuities() override { device_->dropDiscontinuities(); }
   void traceReverse(uint32_t first, uint32_t count) override { device_->traceReverse(first, count); }
