@@ -14,8 +14,9 @@ SL_CONST uint kSumItems = 64u;
 SL_CONST uint kRayCounters = 256u;      ///< 0 .. 255: rays
 SL_CONST uint kMissingCounter = 256u;   ///< rays that hit something outside the set
 SL_CONST uint kOverflowCounter = 257u;  ///< not 0: the hash set was full
-SL_CONST uint kListCounter = 258u;      ///< bits set in `words`, by sum_blocks
-SL_CONST uint kCounterWords = 259u;
+SL_CONST uint kListCounter = 258u;      ///< bits or border rays that were summed up last for a list
+SL_CONST uint kFreshCounter = 259u;     ///< bits of new triangles
+SL_CONST uint kCounterWords = 260u;
 
 /// Neighbouring leaves that are drawn or left out together. Smaller ones fit a view's edge better, but a draw
 /// costs even where it is empty.
@@ -40,7 +41,7 @@ SL_STRUCT(VulkanLaunch) {
   uint64 entries;  ///< PvsEntry[]
   // Stages.
   uint64 segments;         ///< RandomSegment[] of the batch
-  uint64 border_starts;    ///< uint[] an entry of the border batch: border rays before its own
+  uint64 border_starts;    ///< uint[] an entry of the border batch: border rays before its own; then all
   uint64 border_edges;     ///< BorderEdge[], three an entry of the border batch
   uint64 reverse_items;    ///< ReverseItem[] of the reverse launch
   uint64 border_hits;      ///< uint[] a border ray: leaf that it hit, kNoTriangle or kNotTraced
@@ -72,6 +73,7 @@ SL_STRUCT(VulkanLaunch) {
   uint list_end;  ///< entries in the list
   uint word_count;
   uint block_count;
+  uint sum_place;          ///< counter that sum_blocks writes: kListCounter or kFreshCounter
   uint resolution;         ///< of the images of trace_views
   uint level;              ///< of trace_gvs_border
   uint raster_resolution;  ///< of a hemicube's images
@@ -79,6 +81,7 @@ SL_STRUCT(VulkanLaunch) {
   uint chunk_count;
   uint triangle_count;  ///< of the scene
   float raster_near;    ///< distance of the near plane
+  uint unused;          ///< makes the size a multiple of 8, as C++ does
 };
 
 SL_NAMESPACE_END

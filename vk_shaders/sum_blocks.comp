@@ -24,5 +24,5 @@ void main() {
     blocks.at[i] = running;
     running += count;
   }
-  if (thread == kSumItems - 1u) Words(SL_LAUNCH.counters).at[kListCounter] = running;
+  if (thread == kSumItems - 1u) Words(SL_LAUNCH.counters).at[SL_LAUNCH.sum_place] = running;
 }

@@ -1,5 +1,5 @@
 #version 460
-// Makes of the counts of border rays, and the sums before each block, the sums before each entry.
+// Makes of the counts of border rays, and the sums before each block, the sums before each entry and before the end.
 #extension GL_GOOGLE_include_directive : require
 #include "vk_shaders/list.glsl"
 #include "core/shared/border.h"
@@ -12,4 +12,5 @@ void runItem(uint block) {
     Words(SL_LAUNCH.border_starts).at[i] = before;
     before += rays;
   }
+  if (end == SL_LAUNCH.border_count) Words(SL_LAUNCH.border_starts).at[end] = before;
 }

@@ -1,10 +1,11 @@
 #version 460
 // Border rays of the entries from border_first on; notes what each hit and, a bit a ray, whether it met a
-// discontinuity.
+// discontinuity. There may be more work items than rays.
 #extension GL_GOOGLE_include_directive : require
 #include "vk_shaders/trace.glsl"
 
 void runItem(uint index) {
+  if (index >= Words(SL_LAUNCH.border_starts).at[SL_LAUNCH.border_count]) return;
   Ray ray = borderRayAt(index);
   LeafHit found_leaf = nearestHit(ray);
   Hit hit;

@@ -59,6 +59,11 @@ void VulkanCommands::update(const VulkanBuffer& buffer, const void* data, uint64
   context_.api().vkCmdUpdateBuffer(next(), buffer.get(), offset, bytes, data);
 }
 
+void VulkanCommands::updateBeside(const VulkanBuffer& buffer, const void* data, uint64_t bytes,
+                                  uint64_t offset) {
+  context_.api().vkCmdUpdateBuffer(recording_ ? buffer_ : next(), buffer.get(), offset, bytes, data);
+}
+
 void VulkanCommands::copy(const VulkanBuffer& from, const VulkanBuffer& to, uint64_t bytes,
                           uint64_t from_offset, uint64_t to_offset) {
   if (bytes == 0) return;
@@ -66,8 +71,8 @@ void VulkanCommands::copy(const VulkanBuffer& from, const VulkanBuffer& to, uint
   context_.api().vkCmdCopyBuffer(next(), from.get(), to.get(), 1, &region);
 }
 
-void VulkanCommands::run(const VulkanStage& stage, const VulkanBuffer& launch, uint32_t count) {
-  if (count > 0) stage.record(next(), launch.address(), count);
+void VulkanCommands::run(const VulkanStage& stage, VkDeviceAddress launch, uint32_t count) {
+  if (count > 0) stage.record(next(), launch, count);
 }
 
 void VulkanCommands::submit() {

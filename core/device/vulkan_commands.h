@@ -6,7 +6,7 @@
 
 namespace sightline {
 
-/// Records commands and runs them. Every command waits for those before it.
+/// Records commands and runs them. Every command waits for those before it, but for updateBeside.
 class VulkanCommands {
  public:
   VulkanCommands(const VulkanContext& context, VkQueue queue, uint32_t family);
@@ -14,9 +14,13 @@ class VulkanCommands {
   void fill(const VulkanBuffer& buffer, uint32_t value, uint64_t bytes, uint64_t offset = 0);
   /// At most 65,536 bytes, a multiple of 4.
   void update(const VulkanBuffer& buffer, const void* data, uint64_t bytes, uint64_t offset = 0);
+  /// The same, but beside the command before it: of bytes that no command uses which was recorded after the
+  /// last but one.
+  void updateBeside(const VulkanBuffer& buffer, const void* data, uint64_t bytes, uint64_t offset);
   void copy(const VulkanBuffer& from, const VulkanBuffer& to, uint64_t bytes, uint64_t from_offset = 0,
             uint64_t to_offset = 0);
-  void run(const VulkanStage& stage, const VulkanBuffer& launch, uint32_t count);
+  /// launch: address of the VulkanLaunch.
+  void run(const VulkanStage& stage, VkDeviceAddress launch, uint32_t count);
   /// For other commands: the buffer in recording, after a barrier.
   VkCommandBuffer next();
 

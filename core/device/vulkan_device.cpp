@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "core/device/parallel_copy.h"
 #include "core/device/vulkan_raster.h"
@@ -93,10 +94,11 @@ class VulkanDevice final : public Device {
     const uint32_t found = traceUntilItFits([&] {
       traceBorderRays(launch_.border_count, total);
       if (thin) runner_.run(thin_, words);
-      if (listing) countBits(thin ? kept_bits_ : bits_, words);
+      if (listing) countBits(thin ? kept_bits_ : bits_, words, block_counts_, kListCounter);
     });
     if (listing && found > 0) {
-      writeIndices(found, indices_, launch_.indices, "indices of discontinuities");
+      writeIndices(thin ? kept_bits_ : bits_, words, block_counts_, found, indices_,
+                   "indices of discontinuities");
       reserveDiscontinuities(uint64_t(launch_.waiting) + found);
       runner_.run(append_discontinuities_, found);
       launch_.waiting += found;
@@ -138,10 +140,9 @@ class VulkanDevice final : public Device {
   }
 
   uint32_t collect(uint32_t stage) override {
-    countBits(set_.fresh(), set_.freshWords());
-    const uint32_t found = runner_.takeCounts().listed;
+    const uint32_t found = std::exchange(fresh_, 0u);
     if (found > 0) {
-      writeIndices(found, new_ids_, launch_.indices, "list of new triangles");
+      writeIndices(set_.fresh(), set_.freshWords(), fresh_counts_, found, new_ids_, "list of new triangles");
       reserveEntries(size_ + found);
       reserve(segment_buffer_, launch_.segments, segments_.size() * sizeof(RandomSegment), "random segments");
       updateInPieces(segment_buffer_, segments_.data(), segments_.size());
@@ -231,42 +232,49 @@ class VulkanDevice final : public Device {
   }
 
   /// Runs a stage, again with a larger set as long as it was full (insertion is idempotent), and counts the
-  /// rays of one full run. Returns the bits that it listed.
+  /// rays of one full run, and what is new. Returns the bits that it listed.
   uint32_t traceUntilItFits(auto&& stage) {
     for (;;) {
       stage();
+      countBits(set_.fresh(), set_.freshWords(), fresh_counts_, kFreshCounter);
       const VulkanCounts counts = runner_.takeCounts();
       if (!counts.overflow) {
         rays_ += counts.rays;
+        fresh_ = counts.fresh;
         return counts.listed;
       }
       set_.grow(4);
     }
   }
 
-  /// Chooses the entries of a batch of border rays and makes their polygons; returns the number of rays.
+  /// Chooses the entries of a batch of border rays and makes their polygons; returns a bound of the number of
+  /// rays: where everything fits in any case, nobody waits for the sum.
   uint32_t beginBorderBatch(uint32_t first, uint32_t most_rays) {
     const uint32_t pending = std::min(size_ - first, mostBorderEntries(most_rays, launch_.params));
     const uint32_t blocks = (pending + kBorderBlock - 1) / kBorderBlock;
     launch_.border_first = first;
     launch_.border_count = pending;
     launch_.block_count = blocks;
-    reserve(border_starts_, launch_.border_starts, uint64_t(pending) * 4, "numbers of border rays");
+    reserve(border_starts_, launch_.border_starts, (uint64_t(pending) + 1) * 4, "numbers of border rays");
     reserve(block_counts_, launch_.block_counts, uint64_t(blocks) * 4, "counts of border rays");
     runner_.run(count_rays_, blocks);
+    launch_.sum_place = kListCounter;
     runner_.run(sum_, kSumItems);
     runner_.run(sum_rays_, blocks);
-    const uint32_t all = runner_.takeCounts().listed;
-    std::vector<uint32_t> sums(blocks + 1, all);
-    if (all > most_rays) read(block_counts_, sums.data(), uint64_t(blocks) * 4);
-    const auto after = std::upper_bound(sums.begin() + 1, sums.end(), most_rays);
-    const auto taken =
-        all > most_rays ? std::max(1u, static_cast<uint32_t>(after - sums.begin() - 1)) : blocks;
-    launch_.border_count = std::min(taken * kBorderBlock, pending);
+    uint64_t bound = uint64_t(pending) * borderRayCount(launch_.params.counts.x, launch_.params);
+    if (bound > most_rays) {
+      std::vector<uint32_t> sums(blocks + 1);
+      sums.back() = runner_.takeCounts().listed;
+      read(block_counts_, sums.data(), uint64_t(blocks) * 4);
+      const auto after = std::upper_bound(sums.begin() + 1, sums.end(), most_rays);
+      const auto taken = std::max(1u, static_cast<uint32_t>(after - sums.begin() - 1));
+      launch_.border_count = std::min(taken * kBorderBlock, pending);
+      bound = sums[taken];
+    }
     const uint32_t sides = launch_.border_count * 3;
     reserve(border_edges_, launch_.border_edges, uint64_t(sides) * sizeof(BorderEdge), "border polygons");
     runner_.run(edges_, sides);
-    return sums[taken];
+    return static_cast<uint32_t>(bound);
   }
 
   /// Makes room for `count` discontinuities that wait, at least doubling their list.
@@ -300,22 +308,28 @@ class VulkanDevice final : public Device {
     address = buffer.address();
   }
 
-  /// Counts the bits, block by block; the counts' total is VulkanCounts::listed.
-  void countBits(const VulkanBuffer& words, uint32_t word_count) {
-    launch_.words = words.address();
-    launch_.word_count = word_count;
-    launch_.block_count = (word_count + kBlockWords - 1) / kBlockWords;
-    reserve(block_counts_, launch_.block_counts, uint64_t(launch_.block_count) * 4, "counts of bits");
+  /// Counts bits, block by block, and all of them into the counter `place`.
+  void countBits(const VulkanBuffer& words, uint32_t word_count, VulkanBuffer& block_counts, uint32_t place) {
+    describeBits(words, word_count);
+    reserve(block_counts, launch_.block_counts, uint64_t(launch_.block_count) * 4, "counts of bits");
+    launch_.sum_place = place;
     runner_.run(count_, launch_.block_count);
     runner_.run(sum_, kSumItems);
   }
 
-  /// Writes the indices of the bits counted last, ascending, and clears the bits.
-  void writeIndices(uint32_t total, VulkanBuffer& indices, uint64& address, const char* what) {
-    if (total == 0) return;
-    reserve(indices, address, uint64_t(total) * 4, what);
-    launch_.indices = indices.address();
+  /// Writes the indices of the bits that countBits counted to `indices`, ascending, and clears the bits.
+  void writeIndices(const VulkanBuffer& words, uint32_t word_count, const VulkanBuffer& block_counts,
+                    uint32_t total, VulkanBuffer& indices, const char* what) {
+    describeBits(words, word_count);
+    launch_.block_counts = block_counts.address();
+    reserve(indices, launch_.indices, uint64_t(total) * 4, what);
     runner_.run(write_, launch_.block_count);
+  }
+
+  void describeBits(const VulkanBuffer& words, uint32_t word_count) {
+    launch_.words = words.address();
+    launch_.word_count = word_count;
+    launch_.block_count = (word_count + kBlockWords - 1) / kBlockWords;
   }
 
   template <typename T>
@@ -368,8 +382,8 @@ class VulkanDevice final : public Device {
   VulkanScene scene_;
   VulkanSet set_;
   VulkanBuffer faces_, entries_, segment_buffer_, border_starts_, border_edges_, border_hits_, bits_,
-      kept_bits_, indices_, waiting_, new_ids_, block_counts_, reverse_items_, rays_buffer_, hits_buffer_,
-      views_, view_triangles_, hemicube_, hemicube_batch_, readback_;
+      kept_bits_, indices_, waiting_, new_ids_, block_counts_, fresh_counts_, reverse_items_, rays_buffer_,
+      hits_buffer_, views_, view_triangles_, hemicube_, hemicube_batch_, readback_;
   std::optional<VulkanUpload> upload_;
   VulkanStage count_, sum_, write_, count_rays_, sum_rays_, edges_, thin_, append_discontinuities_,
       reverse_list_, append_, contained_, pixels_;
@@ -378,7 +392,8 @@ class VulkanDevice final : public Device {
   std::vector<RandomSegment> segments_;  ///< of the batch
   std::vector<ViewFrame> hemicubes_;     ///< of the batch, five views each
   uint32_t entry_capacity_ = 0;
-  uint32_t size_ = 0;  ///< entries of the list
+  uint32_t size_ = 0;   ///< entries of the list
+  uint32_t fresh_ = 0;  ///< new triangles of the batch
   uint64_t rays_ = 0;
 };
 

@@ -9,13 +9,21 @@ namespace sightline {
 
 // GLSL's scalar layout pads nothing and aligns each member by its own components: so must C++.
 static_assert(offsetof(VulkanLaunch, tlas) == 160 && alignof(VulkanLaunch) == 8);
-static_assert(sizeof(VulkanLaunch) == 160 + 32 * sizeof(uint64) + 18 * sizeof(uint));
+static_assert(sizeof(VulkanLaunch) == 160 + 32 * sizeof(uint64) + 20 * sizeof(uint));
 static_assert(sizeof(Face) == 96 && sizeof(Ray) == 32 && sizeof(Hit) == 8 && sizeof(PvsEntry) == 32);
 static_assert(sizeof(RandomSegment) == 64 && sizeof(StageParams) == 80 && sizeof(ViewFrame) == 64);
 
+namespace {
+
+/// In the buffer of launches, and the bytes from one to the next.
+constexpr uint32_t kLaunches = 16, kLaunchStride = 512;
+static_assert(sizeof(VulkanLaunch) <= kLaunchStride);
+
+}  // namespace
+
 VulkanRunner::VulkanRunner(const VulkanContext& context)
     : commands(context, context.queue(), context.queueFamily()),
-      launch_buffer_(context.buffer(sizeof(VulkanLaunch), "launch")),
+      launches_(context.buffer(kLaunches * kLaunchStride, "launches")),
       counters_(context.buffer(kCounterWords * 4, "counters")),
       readback_(context.buffer(kCounterWords * 4, "counters", VulkanMemory::kReadback)) {
   launch.counters = counters_.address();
@@ -24,13 +32,13 @@ VulkanRunner::VulkanRunner(const VulkanContext& context)
 
 void VulkanRunner::run(const VulkanStage& stage, uint32_t count) {
   if (count == 0) return;
-  recordLaunch();
-  commands.run(stage, launch_buffer_, count);
+  commands.run(stage, recordLaunch(), count);
 }
 
 VkDeviceAddress VulkanRunner::recordLaunch() {
-  commands.update(launch_buffer_, &launch, sizeof launch);
-  return launch_buffer_.address();
+  turn_ = (turn_ + 1) % kLaunches;
+  commands.updateBeside(launches_, &launch, sizeof launch, turn_ * kLaunchStride);
+  return launches_.address() + turn_ * kLaunchStride;
 }
 
 VulkanCounts VulkanRunner::takeCounts() {
@@ -43,6 +51,7 @@ VulkanCounts VulkanRunner::takeCounts() {
   counts.missing = words[kMissingCounter];
   counts.overflow = words[kOverflowCounter] != 0;
   counts.listed = words[kListCounter];
+  counts.fresh = words[kFreshCounter];
   return counts;
 }
 

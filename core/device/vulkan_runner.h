@@ -10,7 +10,8 @@ namespace sightline {
 struct VulkanCounts {
   uint64_t rays = 0;
   uint32_t missing = 0;   ///< rays that hit something outside the set
-  uint32_t listed = 0;    ///< bits counted by sum_blocks
+  uint32_t listed = 0;    ///< bits counted by sum_blocks for a list ...
+  uint32_t fresh = 0;     ///< ... and in the set's bits of new triangles
   bool overflow = false;  ///< the hash set was full
 };
 
@@ -30,7 +31,9 @@ class VulkanRunner {
   VulkanCounts takeCounts();
 
  private:
-  VulkanBuffer launch_buffer_, counters_, readback_;
+  VulkanBuffer launches_;  ///< kLaunches, used in turn: one is filled while the last is read
+  uint32_t turn_ = 0;
+  VulkanBuffer counters_, readback_;
 };
 
 }  // namespace sightline
