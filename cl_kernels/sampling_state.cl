@@ -109,15 +109,10 @@ static inline ReverseItem reverseItemOf(SceneRef scene, __global const uint* rec
   const float3 target = add3(border.origin.xyz, border.direction.xyz);
   uint mask = 0;
   for (uint f = 0; f < params.counts.w; ++f) mask |= (faceLooksAt(faces[f], target) ? 1u : 0u) << f;
-  ReverseItem item;
-  item.target = (float4)(target, 0);
-  item.number = (uint4)((uint)number, (uint)(number >> 32), mask, ray.z != kNoTriangle);
-  item.a = item.b = item.c = (float4)(0);
+  ReverseItem item = openItem(target, number, mask);
   if (ray.z != kNoTriangle) {
     const Corners corners = triangleCorners(scene, record_of, ray.z);
-    item.a.xyz = corners.a;
-    item.b.xyz = corners.b;
-    item.c.xyz = corners.c;
+    item = occludedItem(item, corners.a, corners.b, corners.c);
   }
   if (isGvs(params)) {
     Ray found;

@@ -107,13 +107,10 @@ ReverseItem reverseItemAt(uint place) {
   for (uint f = 0u; f < params.counts.w; ++f) {
     mask |= (faceLooksAt(Faces(SL_LAUNCH.faces).at[f], target) ? 1u : 0u) << f;
   }
-  bool occluded = ray.z != kNoTriangle;
-  ReverseItem item;
-  item.target = vec4(target.x, target.y, target.z, 0.0f);
-  item.number = uvec4(uint(number), uint(number >> 32), mask, occluded ? 1u : 0u);
-  item.a = occluded ? vec4(leafCorner(ray.z, 0u), 0.0f) : vec4(0.0f);
-  item.b = occluded ? vec4(leafCorner(ray.z, 1u), 0.0f) : vec4(0.0f);
-  item.c = occluded ? vec4(leafCorner(ray.z, 2u), 0.0f) : vec4(0.0f);
+  ReverseItem item = openItem(target, number, mask);
+  if (ray.z != kNoTriangle) {
+    item = occludedItem(item, leafCorner(ray.z, 0u), leafCorner(ray.z, 1u), leafCorner(ray.z, 2u));
+  }
   if (!isGvs(params)) return item;
   Ray found;
   found.origin = vec4(origin, 0.0f);

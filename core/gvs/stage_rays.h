@@ -172,16 +172,10 @@ inline ReverseItem reverseItemOf(const Scene& scene, std::span<const Face> faces
   const vec3 target = add3(xyz3(border.origin), xyz3(border.direction));
   uint32_t mask = 0;
   for (size_t f = 0; f < faces.size(); ++f) mask |= (faceLooksAt(faces[f], target) ? 1u : 0u) << f;
-  ReverseItem item{};
-  item.target = vec4(target, 0);
-  item.number = uvec4(static_cast<uint32_t>(number), static_cast<uint32_t>(number >> 32), mask,
-                      occluder != kNoTriangle ? 1 : 0);
-  if (occluder != kNoTriangle) {
-    item.a = vec4(cornerOf(scene, occluder, 0), 0);
-    item.b = vec4(cornerOf(scene, occluder, 1), 0);
-    item.c = vec4(cornerOf(scene, occluder, 2), 0);
-  }
-  return item;
+  const ReverseItem item = openItem(target, number, mask);
+  if (occluder == kNoTriangle) return item;
+  return occludedItem(item, cornerOf(scene, occluder, 0), cornerOf(scene, occluder, 1),
+                      cornerOf(scene, occluder, 2));
 }
 
 /// The item of a discontinuity that waits, by the method of the parameters. entries: the whole list.

@@ -59,6 +59,27 @@ SL_STRUCT(ReverseItem) {
                  ///< look at the target; w: 1 if there is an occluder
 };
 
+/// The item of a target, as if there were no occluder. number: running number; mask: bits of the faces that
+/// look at the target.
+SL_FUNC ReverseItem openItem(vec3 target, uint64 number, uint mask) {
+  ReverseItem item;
+  item.target = vec4(target.x, target.y, target.z, 0.0f);
+  item.a = vec4(0.0f, 0.0f, 0.0f, 0.0f);
+  item.b = item.a;
+  item.c = item.a;
+  item.number = uvec4(slUint(number), slUint(number >> 32), mask, 0u);
+  return item;
+}
+
+/// The same with the occluder a b c.
+SL_FUNC ReverseItem occludedItem(ReverseItem item, vec3 a, vec3 b, vec3 c) {
+  item.a = vec4(a.x, a.y, a.z, 0.0f);
+  item.b = vec4(b.x, b.y, b.z, 0.0f);
+  item.c = vec4(c.x, c.y, c.z, 0.0f);
+  item.number.w = 1u;
+  return item;
+}
+
 SL_FUNC uint64 reverseItemNumber(ReverseItem item) {
   return (slUint64(item.number.y) << 32) | slUint64(item.number.x);
 }
