@@ -85,13 +85,6 @@ __kernel void appendDiscontinuities(SL_BORDER_ARGS, __global const uint* border_
   discontinuities[end + i] = discontinuity;
 }
 
-/// Moves the list of discontinuities into a larger buffer.
-__kernel void copyDiscontinuities(__global const Discontinuity* from, __global Discontinuity* to,
-                                  uint count) {
-  const uint i = (uint)get_global_id(0);
-  if (i < count) to[i] = from[i];
-}
-
 /// The items of the discontinuities from `first` on, for their reverse rays. items_before: discontinuities of
 /// the cell before the list.
 __kernel void reverseItems(SL_SCENE_ARGS, SL_CORNER_ARGS, __global const Face* faces, StageParams params,

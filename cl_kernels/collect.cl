@@ -129,9 +129,3 @@ __kernel void rehash(__global const uint* old_keys, __global const uint* old_win
   }
   winner[slot] = old_winner[i];
 }
-
-/// Moves the list into a larger buffer.
-__kernel void copyEntries(__global const PvsEntry* from, __global PvsEntry* to, uint count) {
-  const uint i = (uint)get_global_id(0);
-  if (i < count) to[i] = from[i];
-}

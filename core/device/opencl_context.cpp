@@ -206,6 +206,12 @@ void OpenClContext::fill(const ClBuffer& buffer, uint32_t value, uint64_t bytes,
           "clEnqueueFillBuffer");
 }
 
+void OpenClContext::copy(const ClBuffer& from, const ClBuffer& to, uint64_t bytes) {
+  if (bytes == 0) return;
+  checkCl(clEnqueueCopyBuffer(queue_.get(), from.get(), to.get(), 0, 0, bytes, 0, nullptr, nullptr),
+          "clEnqueueCopyBuffer");
+}
+
 void OpenClContext::enqueue(const ClKernel& kernel, uint64_t global, uint32_t local) {
   if (global == 0) return;
   const size_t local_size = local;

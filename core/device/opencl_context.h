@@ -95,6 +95,8 @@ class OpenClContext {
   void write(const ClBuffer& buffer, const void* source, uint64_t bytes, uint64_t offset = 0);
   void read(const ClBuffer& buffer, void* target, uint64_t bytes, uint64_t offset = 0);
   void fill(const ClBuffer& buffer, uint32_t value, uint64_t bytes, uint64_t offset = 0);
+  /// Copies the first bytes of a buffer into another.
+  void copy(const ClBuffer& from, const ClBuffer& to, uint64_t bytes);
   /// read for much: through memory that the driver pinned, at the full speed of the bus.
   void readFast(const ClBuffer& buffer, void* target, uint64_t bytes);
 

@@ -51,13 +51,24 @@ class OpenClDevice final : public Device {
     counters_ = context_.buffer(kCounters * 4, "counters");
     context_.fill(counters_, 0, counters_.bytes());
     set_ = std::make_unique<OpenClSet>(context_, counters_, triangle_count_, wantsHash(options));
-    const char* names[] = {"traceRandom",         "countMissing",        "traceBorder",
-                           "traceReverse",        "countBits",           "sumBlocks",
-                           "writeIndices",        "appendEntries",       "insertContained",
-                           "copyEntries",         "traceRaysKernel",     "traceViewsKernel",
-                           "traceGvsBorder",      "countBorderRays",     "sumBorderRays",
-                           "borderEdges",         "thinDiscontinuities", "appendDiscontinuities",
-                           "copyDiscontinuities", "reverseItems"};
+    const char* names[] = {"traceRandom",
+                           "countMissing",
+                           "traceBorder",
+                           "traceReverse",
+                           "countBits",
+                           "sumBlocks",
+                           "writeIndices",
+                           "appendEntries",
+                           "insertContained",
+                           "traceRaysKernel",
+                           "traceViewsKernel",
+                           "traceGvsBorder",
+                           "countBorderRays",
+                           "sumBorderRays",
+                           "borderEdges",
+                           "thinDiscontinuities",
+                           "appendDiscontinuities",
+                           "reverseItems"};
     ClKernel* kernels[] = {&random_,
                            &missing_,
                            &border_,
@@ -67,7 +78,6 @@ class OpenClDevice final : public Device {
                            &write_,
                            &append_,
                            &contained_,
-                           &copy_,
                            &rays_kernel_,
                            &views_kernel_,
                            &gvs_border_,
@@ -76,7 +86,6 @@ class OpenClDevice final : public Device {
                            &make_edges_,
                            &thin_,
                            &append_discontinuities_,
-                           &copy_discontinuities_,
                            &make_items_};
     for (size_t i = 0; i < std::size(names); ++i) *kernels[i] = context_.kernel(names[i]);
     faces_ = context_.buffer(6 * sizeof(Face), "faces of the view cell");
@@ -124,7 +133,7 @@ class OpenClDevice final : public Device {
   void traceReverse(uint32_t first, uint32_t count) override {
     items_.reserve(context_, uint64_t(count) * sizeof(ReverseItem), "reverse samples");
     context_.launch(make_items_, count, kListGroup, scene_.nodes, scene_.triangles, scene_.reach, record_of_,
-                    faces_, params_, entries_, discontinuity_list_.buffer, first, count, items_before_,
+                    faces_, params_, entries_, discontinuity_list_, first, count, items_before_,
                     items_.buffer);
     const uint32_t total = count * reverseRayCount(params_);
     traceUntilItFits([&] { launch(reverse_, total, faces_, params_, items_.buffer, total, counters_); });
@@ -296,26 +305,14 @@ class OpenClDevice final : public Device {
     const uint32_t found = last_counters_[kDiscontinuityCounter];
     if (found == 0) return 0;
     writeIndices(bits, words, block_counts_, found, indices_, "indices of discontinuities");
-    reserveDiscontinuities(uint64_t(discontinuities_) + found);
+    growList(discontinuity_list_, uint64_t(discontinuities_) * sizeof(Discontinuity),
+             (uint64_t(discontinuities_) + found) * sizeof(Discontinuity), ~uint64_t(0),
+             "list of discontinuities");
     context_.launch(append_discontinuities_, found, kListGroup, entries_, border_first_, edges_.buffer,
                     starts_.buffer, border_count_, border_hits_.buffer, indices_.buffer, found,
-                    discontinuity_list_.buffer, discontinuities_);
+                    discontinuity_list_, discontinuities_);
     discontinuities_ += found;
     return found;
-  }
-
-  /// Makes room for `count` discontinuities, at least doubling their list.
-  void reserveDiscontinuities(uint64_t count) {
-    const uint64_t bytes = discontinuity_list_.buffer.bytes();
-    if (discontinuity_list_.buffer.get() != nullptr && count * sizeof(Discontinuity) <= bytes) return;
-    Scratch larger;
-    larger.reserve(context_, std::max(count * sizeof(Discontinuity), 2 * bytes), "list of discontinuities");
-    if (discontinuities_ > 0) {
-      context_.launch(copy_discontinuities_, discontinuities_, kListGroup, discontinuity_list_.buffer,
-                      larger.buffer, discontinuities_);
-    }
-    context_.finish();
-    discontinuity_list_ = std::move(larger);
   }
 
   /// Runs a stage, again with a larger set as long as it was full (insertion is idempotent), and books the
@@ -357,16 +354,19 @@ class OpenClDevice final : public Device {
                     indices.buffer);
   }
 
-  /// Makes room for `count` entries of the list, at least doubling it.
   void reserveEntries(uint32_t count) {
-    if (count <= entry_capacity_) return;
-    entry_capacity_ = static_cast<uint32_t>(std::min<uint64_t>(
-        std::max<uint64_t>(count, uint64_t(entry_capacity_) * 2), std::max(count, triangle_count_)));
-    ClBuffer larger =
-        context_.buffer(uint64_t(entry_capacity_) * sizeof(PvsEntry), "list of visible triangles");
-    if (size_ > 0) context_.launch(copy_, size_, kListGroup, entries_, larger, size_);
+    growList(entries_, uint64_t(size_) * sizeof(PvsEntry), uint64_t(count) * sizeof(PvsEntry),
+             uint64_t(triangle_count_) * sizeof(PvsEntry), "list of visible triangles");
+  }
+
+  /// Makes room for `bytes` in a list, at least doubling it, up to `most` where that is enough; keeps its
+  /// first bytes.
+  void growList(ClBuffer& list, uint64_t kept, uint64_t bytes, uint64_t most, const char* what) {
+    if (list.get() != nullptr && bytes <= list.bytes()) return;
+    ClBuffer larger = context_.buffer(std::max(bytes, std::min(2 * list.bytes(), most)), what);
+    context_.copy(list, larger, kept);
     context_.finish();
-    entries_ = std::move(larger);
+    list = std::move(larger);
   }
 
   OpenClContext context_;
@@ -374,16 +374,15 @@ class OpenClDevice final : public Device {
   uint32_t local_ = 0;
   uint32_t triangle_count_;
   OpenClScene scene_;
-  ClBuffer record_of_, faces_, counters_, entries_;
-  ClKernel random_, missing_, border_, reverse_, count_, sum_, write_, append_, contained_, copy_,
-      rays_kernel_, views_kernel_, gvs_border_, count_rays_, sum_rays_, make_edges_, thin_,
-      append_discontinuities_, copy_discontinuities_, make_items_;
+  ClBuffer record_of_, faces_, counters_, entries_, discontinuity_list_;
+  ClKernel random_, missing_, border_, reverse_, count_, sum_, write_, append_, contained_, rays_kernel_,
+      views_kernel_, gvs_border_, count_rays_, sum_rays_, make_edges_, thin_, append_discontinuities_,
+      make_items_;
   std::unique_ptr<OpenClSet> set_;
   StageParams params_{};
   std::vector<RandomSegment> segments_;  ///< of the batch
-  Scratch segment_buffer_, starts_, edges_, border_hits_, bits_, kept_bits_, indices_, discontinuity_list_,
-      items_, new_ids_, block_counts_, fresh_counts_, views_, view_triangles_;
-  uint32_t entry_capacity_ = 0;
+  Scratch segment_buffer_, starts_, edges_, border_hits_, bits_, kept_bits_, indices_, items_, new_ids_,
+      block_counts_, fresh_counts_, views_, view_triangles_;
   uint32_t size_ = 0;             ///< entries of the list
   uint32_t border_first_ = 0;     ///< first entry of the batch of border rays
   uint32_t border_count_ = 0;     ///< its entries

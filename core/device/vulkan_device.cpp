@@ -99,7 +99,9 @@ class VulkanDevice final : public Device {
     if (listing && found > 0) {
       writeIndices(thin ? kept_bits_ : bits_, words, block_counts_, found, indices_,
                    "indices of discontinuities");
-      reserveDiscontinuities(uint64_t(launch_.waiting) + found);
+      growList(waiting_, launch_.discontinuities, uint64_t(launch_.waiting) * sizeof(Discontinuity),
+               (uint64_t(launch_.waiting) + found) * sizeof(Discontinuity), ~uint64_t(0),
+               "list of discontinuities");
       runner_.run(append_discontinuities_, found);
       launch_.waiting += found;
     }
@@ -277,19 +279,6 @@ class VulkanDevice final : public Device {
     return static_cast<uint32_t>(bound);
   }
 
-  /// Makes room for `count` discontinuities that wait, at least doubling their list.
-  void reserveDiscontinuities(uint64_t count) {
-    if (waiting_.get() != VK_NULL_HANDLE && count * sizeof(Discontinuity) <= waiting_.bytes()) return;
-    VulkanBuffer larger = context_.buffer(std::max(count * sizeof(Discontinuity), 2 * waiting_.bytes()),
-                                          "list of discontinuities");
-    if (launch_.waiting > 0) {
-      runner_.commands.copy(waiting_, larger, uint64_t(launch_.waiting) * sizeof(Discontinuity));
-    }
-    runner_.commands.finish();
-    waiting_ = std::move(larger);
-    launch_.discontinuities = waiting_.address();
-  }
-
   /// All border rays of `count` entries; of the original method level after level.
   void traceBorderRays(uint32_t count, uint32_t total) {
     if (!isGvs(launch_.params)) return runner_.run(tracing(border_, "trace_border"), total);
@@ -361,17 +350,22 @@ class VulkanDevice final : public Device {
     }
   }
 
-  /// Makes room for `count` entries of the list, at least doubling it.
   void reserveEntries(uint32_t count) {
-    if (count <= entry_capacity_) return;
-    entry_capacity_ = static_cast<uint32_t>(std::min<uint64_t>(
-        std::max<uint64_t>(count, uint64_t(entry_capacity_) * 2), std::max(count, triangle_count_)));
-    VulkanBuffer larger =
-        context_.buffer(uint64_t(entry_capacity_) * sizeof(PvsEntry), "list of visible triangles");
-    runner_.commands.copy(entries_, larger, uint64_t(size_) * sizeof(PvsEntry));
+    growList(entries_, launch_.entries, uint64_t(size_) * sizeof(PvsEntry),
+             uint64_t(count) * sizeof(PvsEntry), uint64_t(triangle_count_) * sizeof(PvsEntry),
+             "list of visible triangles");
+  }
+
+  /// Makes room for `bytes` in a list, at least doubling it, up to `most` where that is enough; keeps its
+  /// first bytes, and puts its address into the launch.
+  void growList(VulkanBuffer& list, uint64& address, uint64_t kept, uint64_t bytes, uint64_t most,
+                const char* what) {
+    if (list.get() != VK_NULL_HANDLE && bytes <= list.bytes()) return;
+    VulkanBuffer larger = context_.buffer(std::max(bytes, std::min(2 * list.bytes(), most)), what);
+    runner_.commands.copy(list, larger, kept);
     runner_.commands.finish();
-    entries_ = std::move(larger);
-    launch_.entries = entries_.address();
+    list = std::move(larger);
+    address = list.address();
   }
 
   VulkanContext context_;
@@ -391,9 +385,8 @@ class VulkanDevice final : public Device {
   std::optional<VulkanRaster> raster_;   ///< made when it is first needed
   std::vector<RandomSegment> segments_;  ///< of the batch
   std::vector<ViewFrame> hemicubes_;     ///< of the batch, five views each
-  uint32_t entry_capacity_ = 0;
-  uint32_t size_ = 0;   ///< entries of the list
-  uint32_t fresh_ = 0;  ///< new triangles of the batch
+  uint32_t size_ = 0;                    ///< entries of the list
+  uint32_t fresh_ = 0;                   ///< new triangles of the batch
   uint64_t rays_ = 0;
 };
 
