@@ -341,8 +341,9 @@ class CellBake {
     const double explored = std::max(1.0, double(bordered_));
     const double border_each = double(stats_.border.rays) / explored;
     const double waiting_each = double(discontinuities_total_) / explored;
+    const double entries = double(pvs_size_ - bordered_) + double(unlisted_end_ - unlisted_first_);
     return double(random_left_) + double(waiting()) * reverse_each +
-           double(pvs_size_ - bordered_) * (border_each + waiting_each * reverse_each) +
+           entries * (border_each + waiting_each * reverse_each) +
            double(params_.validation_rays - stats_.validation_rays);
   }
 
