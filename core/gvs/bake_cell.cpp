@@ -21,7 +21,7 @@ namespace sightline {
 namespace {
 
 /// Rays of one random launch at most: a second or so on a processor, for progress and interruption; enough to
-/// keep a GPU busy.
+/// keep a GPU busy. A limit of rays is tested after each, so with one they are the same on every device.
 constexpr uint32_t kRandomLaunchRays = 1u << 22, kRandomLaunchRaysGpu = 1u << 24;
 
 /// After a test of the error, so many times its rays are traced before the next one: tests take a fifth of
@@ -39,7 +39,8 @@ class CellBake {
         cell_index_(cell_index),
         hooks_(hooks),
         face_rays_(raysByArea(faces_, params.n_rand)),
-        random_launch_rays_(device.info().on_cpu ? kRandomLaunchRays : kRandomLaunchRaysGpu),
+        random_launch_rays_(device.info().on_cpu || params.max_rays > 0 ? kRandomLaunchRays
+                                                                        : kRandomLaunchRaysGpu),
         yield_(params.batch_rays) {
     stage_params_ =
         makeStageParams(params, faces_.size(), haltonShifts(params.seed, cell_index, RandomUse::kSampling));
@@ -81,7 +82,7 @@ class CellBake {
     device_.insertContained(unseen);
     stats_.contained_triangles = unseen.size();
     pvs_size_ += static_cast<uint32_t>(unseen.size());
-    bordered_ = pvs_size_;
+    bordered_ = listed_ = pvs_size_;
   }
 
   /// Fresh random rays of other shifts; counts those that hit something outside the set.
@@ -210,11 +211,11 @@ class CellBake {
   /// found fewer than T triangles leaves nothing.
   bool exploreByYield() {
     const double random_yield = double(iteration_new_) / params_.n_rand;
-    while (bordered_ < pvs_size_ || waiting() > 0 || unlisted_first_ < unlisted_end_) {
+    while (bordered_ < pvs_size_ || waiting() > 0 || listed_ < bordered_) {
       const uint32_t entries = pvs_size_ - bordered_;
       const bool catching_up = entries > 0 && stats_.border.rays < stats_.random.rays;
       const double border_yield = entries > 0 ? yield_.border(entries) : -1;
-      const double reverse_yield = waiting() > 0 ? yield_.reverse() : -1;
+      const double reverse_yield = waiting() > 0 || listed_ < bordered_ ? yield_.reverse() : -1;
       const bool may_wait = iteration_new_ >= params_.threshold && !catching_up;
       if (may_wait && std::max(border_yield, reverse_yield) < random_yield) return true;
       const bool to_border = entries > 0 && (catching_up || border_yield >= reverse_yield);
@@ -223,8 +224,8 @@ class CellBake {
     return true;
   }
 
-  /// Rays of the next border or reverse batch at most: no more than all before it, so that a cell runs past a
-  /// limit by less than the limit.
+  /// Rays of the next border or reverse batch at most: no more than all before it, so that such a batch runs
+  /// past a limit by less than the limit.
   uint32_t batchRays() const {
     return static_cast<uint32_t>(std::clamp<uint64_t>(rays_, kFewestBatchRays, params_.batch_rays));
   }
@@ -232,26 +233,23 @@ class CellBake {
   /// Discontinuities whose reverse rays are still to be traced.
   uint32_t waiting() const { return discontinuities_ - reversed_; }
 
-  /// A batch of border rays. false: a limit was reached.
+  /// A batch of border rays. Once the list of discontinuities is full, those of this and all later entries
+  /// wait for listAgain. false: a limit was reached.
   bool border() {
     const bool reverses = reverseRayCount(stage_params_) > 0;
-    const bool listing = reverses && discontinuities_ < hooks_.most_listed;
-    const uint32_t first = bordered_, found = pvs_size_;
+    const bool in_step = listed_ == bordered_ && (!reverses || discontinuities_ < hooks_.most_listed);
+    const uint32_t found = pvs_size_;
     const uint64_t rays = rays_;
-    const uint32_t entries = borderBatch(first, listing);
+    const uint32_t entries = borderBatch(bordered_, in_step && reverses);
     yield_.bookBorder(entries, rays_ - rays, pvs_size_ - found);
-    bordered_ += entries;
-    if (reverses && !listing) {
-      if (unlisted_first_ == unlisted_end_) unlisted_first_ = first;
-      unlisted_end_ = bordered_;
-    }
+    if (in_step) listed_ = bordered_;
     return stats_.stop == StopReason::kConverged;
   }
 
   /// Border rays once more, of entries whose discontinuities found no room in the list, which is empty now.
   /// false: a limit was reached.
   bool listAgain() {
-    unlisted_first_ = std::min(unlisted_first_ + borderBatch(unlisted_first_, true), unlisted_end_);
+    listed_ += borderBatch(listed_, true);
     return stats_.stop == StopReason::kConverged;
   }
 
@@ -259,6 +257,7 @@ class CellBake {
   uint32_t borderBatch(uint32_t first, bool listing) {
     const auto start = Clock::now();
     const BorderBatch batch = device_.traceBorder(first, batchRays(), listing);
+    bordered_ = std::max(bordered_, first + batch.entries);
     discontinuities_ += batch.discontinuities;
     discontinuities_total_ += batch.discontinuities;
     finishLaunch(kStageBorder, stats_.border);
@@ -341,7 +340,7 @@ class CellBake {
     const double explored = std::max(1.0, double(bordered_));
     const double border_each = double(stats_.border.rays) / explored;
     const double waiting_each = double(discontinuities_total_) / explored;
-    const double entries = double(pvs_size_ - bordered_) + double(unlisted_end_ - unlisted_first_);
+    const double entries = double(pvs_size_ - bordered_) + double(bordered_ - listed_);
     return double(random_left_) + double(waiting()) * reverse_each +
            entries * (border_each + waiting_each * reverse_each) +
            double(params_.validation_rays - stats_.validation_rays);
@@ -362,12 +361,11 @@ class CellBake {
   uint64_t rays_ = 0;
   uint32_t random_left_ = 0;  ///< random rays of this iteration still to trace
   uint32_t pvs_size_ = 0;
-  uint32_t bordered_ = 0;               ///< entries of the list whose border rays have been traced
+  uint32_t bordered_ = 0;  ///< entries of the list whose border rays have been traced
+  uint32_t listed_ = 0;    ///< entries whose discontinuities have been listed; fewer once the list was full
   uint32_t discontinuities_ = 0;        ///< that the device has listed ...
   uint32_t reversed_ = 0;               ///< ... and whose reverse rays have been traced
   uint64_t discontinuities_total_ = 0;  ///< of the cell
-  uint32_t unlisted_first_ = 0;  ///< entries bordered while the list of discontinuities was full: the ...
-  uint32_t unlisted_end_ = 0;    ///< ... range that holds them all
   ExplorationYield yield_;
   uint32_t iteration_new_ = 0;
   uint64_t next_test_ = 0;  ///< rays traced when the error is next tested against the target

@@ -9,7 +9,8 @@
 
 namespace sightline {
 
-/// State of a cell's bake, reported after every device launch (several times a second on a slow device).
+/// State of a cell's bake, reported after every device launch: about once a second on a
+/// processor, every few seconds where its rays are slowest.
 struct BakeProgress {
   uint32_t iteration = 0;  ///< 1, 2, ...
   uint32_t stage = 0;      ///< kStage... in work; validation: kStageRandom with validating = true
