@@ -14,8 +14,7 @@ class VulkanCommands {
   void fill(const VulkanBuffer& buffer, uint32_t value, uint64_t bytes, uint64_t offset = 0);
   /// At most 65,536 bytes, a multiple of 4.
   void update(const VulkanBuffer& buffer, const void* data, uint64_t bytes, uint64_t offset = 0);
-  /// The same, but beside the command before it: of bytes that no command uses which was recorded after the
-  /// last but one.
+  /// The same without a barrier before it: the command recorded last must not use these bytes.
   void updateBeside(const VulkanBuffer& buffer, const void* data, uint64_t bytes, uint64_t offset);
   void copy(const VulkanBuffer& from, const VulkanBuffer& to, uint64_t bytes, uint64_t from_offset = 0,
             uint64_t to_offset = 0);

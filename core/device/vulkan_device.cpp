@@ -70,7 +70,7 @@ class VulkanDevice final : public Device {
     segments_.clear();
     hemicubes_.clear();
     launch_.waiting = 0;
-    size_ = 0;
+    size_ = fresh_ = 0;
     rays_ = 0;
   }
 
@@ -234,7 +234,7 @@ class VulkanDevice final : public Device {
   }
 
   /// Runs a stage, again with a larger set as long as it was full (insertion is idempotent), and counts the
-  /// rays of one full run, and what is new. Returns the bits that it listed.
+  /// rays of one full run, and what is new. Returns VulkanCounts::listed.
   uint32_t traceUntilItFits(auto&& stage) {
     for (;;) {
       stage();

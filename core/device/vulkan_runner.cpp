@@ -15,8 +15,8 @@ static_assert(sizeof(RandomSegment) == 64 && sizeof(StageParams) == 80 && sizeof
 
 namespace {
 
-/// In the buffer of launches, and the bytes from one to the next.
-constexpr uint32_t kLaunches = 16, kLaunchStride = 512;
+/// In the buffer of launches: one that the command before may read, and the next. The bytes between them.
+constexpr uint32_t kLaunches = 2, kLaunchStride = 512;
 static_assert(sizeof(VulkanLaunch) <= kLaunchStride);
 
 }  // namespace

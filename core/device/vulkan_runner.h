@@ -10,8 +10,8 @@ namespace sightline {
 struct VulkanCounts {
   uint64_t rays = 0;
   uint32_t missing = 0;   ///< rays that hit something outside the set
-  uint32_t listed = 0;    ///< bits counted by sum_blocks for a list ...
-  uint32_t fresh = 0;     ///< ... and in the set's bits of new triangles
+  uint32_t listed = 0;    ///< what sum_blocks summed up last: bits for a list, border rays ...
+  uint32_t fresh = 0;     ///< ... and the set's bits of new triangles
   bool overflow = false;  ///< the hash set was full
 };
 
