@@ -141,6 +141,7 @@ void declareMachine(CLI::App& command, std::string& device, DeviceOptions& optio
             .add_option("--memory-budget", options.memory_budget_bytes,
                         "memory that the device may use, e.g. 4GB (0: what it reports)")
             ->transform(CLI::AsSizeValue(false).description(""))
+            ->transform(byteSize())  // goes first
             ->type_name("BYTES"));
   group(command.add_flag("--spatial-splits", spatial_splits,
                          "slower build, faster rays in scenes of long triangles"));

@@ -20,6 +20,20 @@ inline CLI::Validator between(double low, double high) {
       "");
 }
 
+/// Digits, and a unit after them if there is one: CLI11 lets -5 wrap around, and takes a unit for 0.
+inline CLI::Validator byteSize() {
+  return CLI::Validator(
+      [](std::string& text) {
+        const size_t unit = text.find_first_not_of("0123456789");
+        const bool letters = unit == std::string::npos ||
+                             text.find_first_not_of(" abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ",
+                                                    unit) == std::string::npos;
+        if (unit != 0 && letters) return std::string();
+        return fmt::format("{} is not a whole number of bytes, such as 4000000000 or 4GB", text);
+      },
+      "");
+}
+
 /// Digits of a number that fits 64 bits: CLI11 lets -1 wrap around, and takes more than fits for 0.
 inline CLI::Validator wholeNumber() {
   return CLI::Validator(

@@ -237,6 +237,11 @@ TEST(BakeCommand, StaysWithinItsMemoryBudgetOrSaysWhatItNeeds) {
     EXPECT_TRUE(contains(run, "--memory-budget")) << run.output;
     EXPECT_FALSE(std::filesystem::exists(place / "x.pvs")) << device;
   }
+  for (const char* budget : {"-5", "-5GB", "GB", "5.5GB", "1e9"}) {
+    const ProgramRun run = runProgram(place.bake("x.pvs", std::string("--memory-budget=") + budget));
+    EXPECT_EQ(run.exit_code, 2) << budget;
+    EXPECT_TRUE(contains(run, "is not a whole number of bytes, such as")) << run.output;
+  }
 }
 
 TEST(BakeCommand, ReportIsComplete) {
