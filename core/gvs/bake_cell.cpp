@@ -329,8 +329,24 @@ class CellBake {
     p.seconds = seconds();
     // Before the first border rays nobody knows how much there is to explore.
     const bool known = !explores() || stats_.border.rays > 0 || stats_.iterations > 1 || validating_;
-    p.seconds_left = known ? raysDue() * p.seconds / double(p.rays) : -1;
+    p.seconds_left = known ? secondsDue(double(p.rays) / p.seconds, p.seconds) : -1;
     hooks_.progress(p);
+  }
+
+  /// Estimate of the seconds until the cell is done: to its limits, or less where T may end it. Negative:
+  /// nobody knows.
+  double secondsDue(double rays_a_second, double now) const {
+    const double estimate = raysDue() / rays_a_second;
+    const bool limited = params_.max_seconds > 0 || params_.max_rays > 0;
+    const bool endless = params_.threshold == 0 || params_.target_error > 0;
+    if (validating_ || (!limited && !endless)) return estimate;
+    if (!limited) return -1;
+    double left = 1e18;
+    if (params_.max_seconds > 0) left = params_.max_seconds - now;
+    if (params_.max_rays > 0)
+      left = std::min(left, (double(params_.max_rays) - double(rays_)) / rays_a_second);
+    left = std::max(left, 0.0) + double(params_.validation_rays) / rays_a_second;
+    return endless ? left : std::min(left, estimate);
   }
 
   /// Estimate of the rays until the cell is done, if the queue grows no further and this iteration is the

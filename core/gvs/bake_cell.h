@@ -21,8 +21,8 @@ struct BakeProgress {
   uint64_t queued = 0;         ///< entries still to explore
   double seconds = 0;          ///< since the cell's start
   double seconds_left = 0;  ///< estimate for this cell: rays still known to be due (this iteration's random
-                            ///< rays, queued entries, validation); grows when new triangles turn up.
-                            ///< Negative: not known yet, before the first border rays
+                            ///< rays, queued entries, validation), which grow when new triangles turn up, or
+                            ///< the way to its limits. Negative: not known, as before the first border rays
 };
 
 /// Told about the bake; called on the caller's thread.
