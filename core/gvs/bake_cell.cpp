@@ -343,8 +343,9 @@ class CellBake {
     if (!limited) return -1;
     double left = 1e18;
     if (params_.max_seconds > 0) left = params_.max_seconds - now;
-    if (params_.max_rays > 0)
+    if (params_.max_rays > 0) {
       left = std::min(left, (double(params_.max_rays) - double(rays_)) / rays_a_second);
+    }
     left = std::max(left, 0.0) + double(params_.validation_rays) / rays_a_second;
     return endless ? left : std::min(left, estimate);
   }
@@ -356,7 +357,7 @@ class CellBake {
     const double explored = std::max(1.0, double(bordered_));
     const double border_each = double(stats_.border.rays) / explored;
     const double waiting_each = double(discontinuities_total_) / explored;
-    const double entries = double(pvs_size_ - bordered_) + double(bordered_ - listed_);
+    const double entries = double(pvs_size_ - listed_);
     return double(random_left_) + double(waiting()) * reverse_each +
            entries * (border_each + waiting_each * reverse_each) +
            double(params_.validation_rays - stats_.validation_rays);
