@@ -17,14 +17,13 @@ class ExplorationYield {
     border_found_each_ = double(found) / entries;
   }
 
-  /// Books a batch of reverse rays.
-  void bookReverse(uint64_t rays, uint32_t found) { reverse_ = double(found) / (double(rays) + launch()); }
+  /// Books a batch of reverse rays. Counts half what they find: it is small, or seen from few places.
+  void bookReverse(uint64_t rays, uint32_t found) { reverse_ = 0.5 * found / (double(rays) + launch()); }
 
-  /// Of the next batch of border rays, where `entries` wait for theirs. Counts double what they find, for it
-  /// leads to more.
+  /// Of the next batch of border rays, where `entries` wait for theirs.
   double border(uint32_t entries) const {
     const double rays = std::min(entries * border_rays_each_, batch_rays_);
-    return 2 * rays / border_rays_each_ * border_found_each_ / (rays + launch());
+    return rays / border_rays_each_ * border_found_each_ / (rays + launch());
   }
 
   double reverse() const { return reverse_; }
