@@ -11,6 +11,7 @@
 #include "core/gvs/face_rays.h"
 #include "core/gvs/fill_set.h"
 #include "core/gvs/hemicube.h"
+#include "core/gvs/iteration_forecast.h"
 #include "core/gvs/make_stage_params.h"
 #include "core/gvs/random_segment.h"
 #include "core/scene/contained.h"
@@ -57,6 +58,7 @@ class CellBake {
       iteration_new_ = 0;
       more = sample() && (!explores() || explore());
       quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
+      forecast_.add(iteration_new_);
       if (bound != nullptr) {
         // After a limit, too, but briefly: to say where the error stands.
         const uint64_t most = more ? ~uint64_t(0) : rays_ / kRaysBetweenTests + 1;
@@ -350,17 +352,23 @@ class CellBake {
     return endless ? left : std::min(left, estimate);
   }
 
-  /// Estimate of the rays until the cell is done, if the queue grows no further and this iteration is the
-  /// last.
+  /// Estimate of the rays until T ends the cell, if the queue grows no further.
   double raysDue() const {
     const double reverse_each = double(reverseRayCount(stage_params_));
     const double explored = std::max(1.0, double(bordered_));
     const double border_each = double(stats_.border.rays) / explored;
     const double waiting_each = double(discontinuities_total_) / explored;
     const double entries = double(pvs_size_ - listed_);
-    return double(random_left_) + double(waiting()) * reverse_each +
+    return double(random_left_) + iterationsDue() * params_.n_rand + double(waiting()) * reverse_each +
            entries * (border_each + waiting_each * reverse_each) +
            double(params_.validation_rays - stats_.validation_rays);
+  }
+
+  /// Estimate of the iterations after this one.
+  double iterationsDue() const {
+    if (validating_) return 0;
+    const double next = iteration_new_ >= params_.threshold ? 1 : 0;
+    return std::max(next, forecast_.due(params_.threshold) - 1) + params_.quiet_iterations - 1;
   }
 
   Device& device_;
@@ -385,7 +393,8 @@ class CellBake {
   uint64_t discontinuities_total_ = 0;  ///< of the cell
   ExplorationYield yield_;
   uint32_t iteration_new_ = 0;
-  uint64_t next_test_ = 0;  ///< rays traced when the error is next tested against the target
+  IterationForecast forecast_;  ///< of the iterations before this one
+  uint64_t next_test_ = 0;      ///< rays traced when the error is next tested against the target
   bool validating_ = false;
 };
 

@@ -20,9 +20,9 @@ struct BakeProgress {
   uint64_t new_triangles = 0;  ///< in this iteration so far
   uint64_t queued = 0;         ///< entries still to explore
   double seconds = 0;          ///< since the cell's start
-  double seconds_left = 0;  ///< estimate for this cell: rays still known to be due (this iteration's random
-                            ///< rays, queued entries, validation), which grow when new triangles turn up, or
-                            ///< the way to its limits. Negative: not known, as before the first border rays
+  double seconds_left = 0;  ///< estimate for this cell: rays due to T (random rays of as many iterations as
+                            ///< IterationForecast expects, queued entries, validation), or the way to its
+                            ///< limits. Negative: not known, as before the first border rays
 };
 
 /// Told about the bake; called on the caller's thread.
