@@ -95,7 +95,7 @@ void run(const CrosscheckCommand& command) {
     json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers);
   if (!command.report.empty()) saveText(jsonText(json), command.report);
   if (stop.exitCode() != 0) {
-    fmt::print("stopped: the table holds what was traced by then\n");
+    fmt::print("stopped: the table holds what was judged by then\n");
     throw ExitCode{stop.exitCode()};
   }
   const auto past = pastLimits(report, command.limits);

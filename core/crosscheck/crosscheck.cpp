@@ -5,14 +5,19 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <numeric>
 #include <tuple>
 
+#include "core/gvs/bake_cell.h"
 #include "core/shared/ray.h"
 
 namespace sightline {
 namespace {
 
+/// Rays judged between two looks at the stop flag: the judge may take milliseconds for one where coordinates
+/// have so few bits that everything touches everything.
+constexpr size_t kSliceRays = 1024;
 /// Rays shown in full, for each device.
 constexpr size_t kWorstRays = 10;
 /// An aimed ray's answer beyond this t is looked at: its target lies at t = 1, up to rounding.
@@ -83,8 +88,10 @@ class Crosscheck {
   size_t kinds() const { return report_.kinds.size(); }
   RayKind kind(size_t index) const { return report_.kinds[index].kind; }
 
-  /// Rays first .. first + count - 1 of a kind from a cell.
-  void batch(const RayMaker& maker, uint32_t cell, size_t kind_index, uint64_t first, size_t count) {
+  /// Traces rays first .. first + count - 1 of a kind from a cell, and judges them; `judged` is called with
+  /// the number of each slice of them, and may throw.
+  void batch(const RayMaker& maker, uint32_t cell, size_t kind_index, uint64_t first, size_t count,
+             const std::function<void(size_t)>& judged) {
     rays_.resize(count);
     maker.make(kind(kind_index), first, rays_);
     const auto start = std::chrono::steady_clock::now();
@@ -92,12 +99,16 @@ class Crosscheck {
     for (size_t d = 0; d < devices_.size(); ++d) devices_[d]->traceRays(rays_, hits_[d]);
     report_.trace_seconds += secondsSince(start);
 
-    const auto judge_start = std::chrono::steady_clock::now();
     judged_.assign(count, {});
     opinions_.assign(count * devices_.size(), {});
-    tbb::parallel_for(size_t(0), count, [&](size_t i) { form(i, kind(kind_index), first); });
-    for (size_t i = 0; i < count; ++i) book(i, cell, kind_index, first);
-    report_.judge_seconds += secondsSince(judge_start);
+    for (size_t begin = 0, end = 0; begin < count; begin = end) {
+      const auto judge_start = std::chrono::steady_clock::now();
+      end = std::min(begin + kSliceRays, count);
+      tbb::parallel_for(begin, end, [&](size_t i) { form(i, kind(kind_index), first); });
+      for (size_t i = begin; i < end; ++i) book(i, cell, kind_index, first);
+      report_.judge_seconds += secondsSince(judge_start);
+      judged(end - begin);
+    }
   }
 
   CrosscheckReport finish() {
@@ -190,20 +201,28 @@ CrosscheckReport crosscheck(const Scene& scene, const Bvh& bvh, std::span<const 
   Crosscheck check(scene, bvh, devices, options);
   const uint64_t due = options.rays * check.kinds();
   uint64_t done = 0;
-  for (uint32_t c = 0; c < cells.size(); ++c) {
-    const uint64_t begin = options.rays * c / cells.size(), end = options.rays * (c + 1) / cells.size();
-    if (begin == end) continue;
-    const RayMaker maker(scene, cells[c], c, *devices[0], options.seed, end - begin);
-    for (size_t k = 0; k < check.kinds(); ++k) {
-      for (uint64_t first = 0; first < end - begin;) {
-        if (stop != nullptr && *stop) return check.finish();
-        const auto count = size_t(std::min<uint64_t>(options.batch_rays, end - begin - first));
-        check.batch(maker, c, k, first, count);
-        first += count;
-        done += count;
-        if (progress) progress(check.kind(k), done, due);
+  const auto report = [&](RayKind kind) {
+    if (progress) progress(kind, done, due);
+    if (stop != nullptr && *stop) throw Interrupted{};
+  };
+  try {
+    for (uint32_t c = 0; c < cells.size(); ++c) {
+      const uint64_t begin = options.rays * c / cells.size(), end = options.rays * (c + 1) / cells.size();
+      if (begin == end) continue;
+      report(check.kind(0));
+      const RayMaker maker(scene, cells[c], c, *devices[0], options.seed, end - begin, stop);
+      for (size_t k = 0; k < check.kinds(); ++k) {
+        for (uint64_t first = 0; first < end - begin; first += options.batch_rays) {
+          const auto count = size_t(std::min<uint64_t>(options.batch_rays, end - begin - first));
+          check.batch(maker, c, k, first, count, [&](size_t judged) {
+            done += judged;
+            report(check.kind(k));
+          });
+        }
       }
     }
+  } catch (const Interrupted&) {
+    // The report holds what was judged by then.
   }
   return check.finish();
 }

@@ -62,7 +62,7 @@ struct CrosscheckReport {
   double trace_seconds = 0, judge_seconds = 0;
 };
 
-/// Told after each batch: kind, rays done and due over all.
+/// Told after every thousand rays or so: kind, rays done and due over all.
 using CrosscheckProgress = std::function<void(RayKind kind, uint64_t done, uint64_t due)>;
 
 /// Traces the same rays on all devices, which hold `scene`; the judge decides where they differ. Cells share

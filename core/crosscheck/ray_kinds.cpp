@@ -77,14 +77,14 @@ bool isAimed(RayKind kind) {
 }
 
 RayMaker::RayMaker(const Scene& scene, const ViewCell& cell, uint32_t cell_index, Device& device,
-                   uint64_t seed, uint64_t rays)
+                   uint64_t seed, uint64_t rays, const std::atomic<bool>* stop)
     : scene_(scene), faces_(cellFaces(cell)), key_(splitmix(splitmix(seed) ^ cell_index)) {
   const Bounds bounds = sceneBounds(scene);
   const vec3 extent = bounds.high - bounds.low, half = glm::abs(vec3(faces_[0].corner) - bounds.low);
   reach_ = std::max(maxAbs3(extent), maxAbs3(half));
   const BakeParams params = searchParams(seed);
   params_ = stageParams(params, faces_.size(), key_);
-  bakeCell(device, scene, cell, cell_index, params);
+  bakeCell(device, scene, cell, cell_index, params, {.stop = stop});
   entries_ = device.readPvs();
   std::erase_if(entries_, [](const PvsEntry& entry) { return entry.direction_stage.w == kStageContained; });
   findDiscontinuities(device, rays);

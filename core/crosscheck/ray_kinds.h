@@ -1,4 +1,5 @@
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -41,9 +42,9 @@ class RayMaker {
  public:
   /// Bakes the cell on `device` with few rays, and traces border rays, so that rays of border and reverse
   /// sampling and targets that can be seen are known. scene must outlive it. rays: how many of a kind will be
-  /// asked for. Throws Error.
+  /// asked for. Throws Error; Interrupted when *stop becomes true.
   RayMaker(const Scene& scene, const ViewCell& cell, uint32_t cell_index, Device& device, uint64_t seed,
-           uint64_t rays);
+           uint64_t rays, const std::atomic<bool>* stop);
 
   /// Fills rays with those of the numbers first, first + 1, ... A direction of zero: there is none.
   void make(RayKind kind, uint64_t first, std::span<Ray> rays) const;

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "core/crosscheck/crosscheck_report.h"
 #include "tests/judge/judge_cases.h"
 #include "tests/judge/wrong_device.h"
@@ -92,6 +94,28 @@ TEST(Crosscheck, DevicesThatAgreeDifferInNothing) {
     EXPECT_GE(kind.devices[1].hits, kind.rays / 2) << name;
   }
   EXPECT_EQ(outcome.verdicts(1, Verdict::kMissed) + outcome.verdicts(1, Verdict::kWrong), 0u);
+}
+
+TEST(Crosscheck, StopsWithinABatchAndReportsWhatWasJudged) {
+  const Room room;
+  const auto device = makeCpuDevice(room.scene, room.bvh, {});
+  Device* devices[] = {device.get()};
+  CrosscheckOptions options;
+  options.rays = 100'000;
+  options.kinds = {RayKind::kRandom, RayKind::kVertex};
+  std::atomic<bool> stop = false;
+  uint64_t last = 0;
+  const auto stopSoon = [&](RayKind, uint64_t done, uint64_t due) {
+    EXPECT_EQ(due, 200'000u);
+    last = done;
+    stop = done > 0;
+  };
+  const CrosscheckReport report =
+      crosscheck(room.scene, room.bvh, std::span(&room.cell, 1), devices, options, stopSoon, &stop);
+  EXPECT_GT(last, 0u);
+  EXPECT_LE(last, 4096u);
+  EXPECT_EQ(report.kinds[0].rays, last);
+  EXPECT_EQ(report.kinds[1].rays, 0u);
 }
 
 TEST(Crosscheck, FindsEachRayLostAtACorner) {
