@@ -173,8 +173,8 @@ void runBake(const BakeOptions& options) {
   }
   const Scene scene = loadScene(options.scene, {.repair = options.repair});
   Bake bake(inputsOf(options, scene), options.out, options.overwrite);
-  say(fmt::format("{}: {} triangles, {} objects; {} cells", options.scene.string(), scene.triangles.size(),
-                  scene.objects.size(), bake.head().planned.size()));
+  say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangles.size(),
+                  counted(scene.objects.size(), "object"), counted(bake.head().planned.size(), "cell")));
   BakeReport report = startReport(options, scene, bake);
 
   int exit_code = 0;

@@ -138,9 +138,9 @@ void run(const CompareCommand& command) {
   report.spatial_splits = command.spatial_splits;
   report.options = command.options;
   report.options.measure = chooseViews(command.views, report.device.on_cpu, command.options.measure);
-  fmt::print("{}: {} triangles, {} cells; {}, {}; {} views of {} x {} pixels a cell\n",
-             command.scene.string(), scene.triangles.size(), cells.size(), report.device.id,
-             report.device.name, report.options.measure.views, report.options.measure.resolution,
+  fmt::print("{}: {} triangles, {}; {}, {}; {} views of {} x {} pixels a cell\n", command.scene.string(),
+             scene.triangles.size(), counted(cells.size(), "cell"), report.device.id, report.device.name,
+             report.options.measure.views, report.options.measure.resolution,
              report.options.measure.resolution);
   StopSignal stop;
   report.complete = compareCells(scene, cells, devices, stop, report);

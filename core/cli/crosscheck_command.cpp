@@ -30,22 +30,36 @@ struct CrosscheckCommand {
   uint32_t n_rand = 1'000'000;
 };
 
-/// Bakes every cell on the first device and on each other one, says and returns how the sets differ.
+/// Bakes every cell on the first device and on each other one, says and returns how the sets differ, of as
+/// many cells as were done before a stop signal.
 Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const Bvh& bvh,
-                     const std::vector<ViewCell>& cells, std::span<Device* const> devices) {
+                     const std::vector<ViewCell>& cells, std::span<Device* const> devices,
+                     const StopSignal& stop) {
+  StatusLine status;
   const Judge judge(scene, bvh);
   BakeParams params;
   params.n_rand = command.n_rand;
   params.validation_rays = 0;
   params.seed = command.options.seed;
   Json pairs = Json::array();
-  for (size_t d = 1; d < devices.size(); ++d) {
-    std::vector<PvsDifference> differences;
-    for (uint32_t c = 0; c < cells.size(); ++c) {
-      differences.push_back(
-          comparePvs(judge, scene, cells[c], c, *devices[0], *devices[d], params, command.options.rounding));
-    }
+  for (size_t d = 1; d < devices.size() && stop.exitCode() == 0; ++d) {
     const std::string first = devices[0]->info().id, other = devices[d]->info().id;
+    std::vector<PvsDifference> differences;
+    try {
+      for (uint32_t c = 0; c < cells.size(); ++c) {
+        const auto show = [&](const BakeProgress& progress) {
+          status.show([&] {
+            return fmt::format("sets of {} and {}: {}  {} rays  PVS {}", first, other, cells[c].name,
+                               shortCount(progress.rays), progress.pvs_size);
+          });
+        };
+        differences.push_back(comparePvs(judge, scene, cells[c], c, *devices[0], *devices[d], params,
+                                         command.options.rounding, {.progress = show, .stop = stop.flag()}));
+      }
+    } catch (const Interrupted&) {
+      // The cells before it are shown.
+    }
+    status.end();
     std::fputs(pvsDifferenceTable(first, other, differences).c_str(), stdout);
     pairs.push_back(pvsDifferenceJson(first, other, differences));
   }
@@ -71,7 +85,8 @@ void run(const CrosscheckCommand& command) {
                       command.scale,   command.move,
                       command.options, {}};
   for (const ViewCell& cell : cells) head.cells.push_back(cell.name);
-  fmt::print("{}: {} triangles, {} cells", command.scene.string(), scene.triangles.size(), cells.size());
+  fmt::print("{}: {} triangles, {}", command.scene.string(), scene.triangles.size(),
+             counted(cells.size(), "cell"));
   for (const Device* device : pointers) fmt::print("; {}, {}", device->info().id, device->info().name);
   fmt::print("\n");
 
@@ -90,9 +105,10 @@ void run(const CrosscheckCommand& command) {
   fmt::print("traced in {}, judged in {}\n", shortDuration(report.trace_seconds),
              shortDuration(report.judge_seconds));
   Json json = crosscheckJson(head, report);
+  if (command.pvs && stop.exitCode() == 0) {
+    json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers, stop);
+  }
   json["complete"] = stop.exitCode() == 0;
-  if (command.pvs && stop.exitCode() == 0)
-    json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers);
   if (!command.report.empty()) saveText(jsonText(json), command.report);
   if (stop.exitCode() != 0) {
     fmt::print("stopped: the table holds what was judged by then\n");

@@ -85,8 +85,8 @@ void showParams(const BakeParams& params) {
   const std::string rule =
       params.target_error > 0
           ? fmt::format("wrong pixels below {:g} of all, with 95 % confidence", params.target_error)
-          : fmt::format("fewer than {} new triangles in {} iterations", params.threshold,
-                        params.quiet_iterations);
+          : fmt::format("fewer than {} new triangles in {}", params.threshold,
+                        counted(params.quiet_iterations, "iteration"));
   row("stop rule",
       fmt::format("{}{}{}", rule, params.max_rays ? fmt::format(", {} rays", params.max_rays) : "",
                   params.max_seconds > 0 ? fmt::format(", {:g} s", params.max_seconds) : ""));

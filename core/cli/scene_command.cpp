@@ -6,6 +6,7 @@
 
 #include "core/cli/commands.h"
 #include "core/cli/number_checks.h"
+#include "core/report/text.h"
 #include "core/scene/file_io.h"
 #include "core/scene/generate.h"
 
@@ -27,11 +28,12 @@ void run(const SceneArguments& arguments) {
   saveScene(scene, arguments.output);
   const Bounds bounds = sceneBounds(scene);
   const glm::vec3 size = bounds.high - bounds.low;
-  fmt::print("{}: {} triangles, {} vertices, {} objects, {:.0f} x {:.0f} x {:.0f} m\n", arguments.output,
-             scene.triangles.size(), scene.positions.size(), scene.objects.size(), size.x, size.y, size.z);
+  fmt::print("{}: {} triangles, {} vertices, {}, {:.0f} x {:.0f} x {:.0f} m\n", arguments.output,
+             scene.triangles.size(), scene.positions.size(), counted(scene.objects.size(), "object"), size.x,
+             size.y, size.z);
   if (arguments.cells.empty()) return;
   saveCells(cells, arguments.cells);
-  fmt::print("{}: {} view cells\n", arguments.cells, cells.size());
+  fmt::print("{}: {}\n", arguments.cells, counted(cells.size(), "view cell"));
 }
 
 std::string footer() {

@@ -131,10 +131,10 @@ HtmlReport comparisonPage(const ComparisonReport& report) {
     points.push_back(summarize(report.cells, options, uint32_t(report.scene.triangles), p));
   }
   HtmlReport html("Methods on " + report.scene.name);
-  html.text(fmt::format(
-      "{} methods with {} a cell each, on {} cells of {} triangles; {} views of {} by {} pixels a cell.",
-      options.methods.size(), budgetText(options.params), report.cells.size(), report.scene.triangles,
-      options.measure.views, options.measure.resolution, options.measure.resolution));
+  html.text(fmt::format("{} with {} a cell each, on {} of {} triangles; {} views of {} by {} pixels a cell.",
+                        counted(options.methods.size(), "method"), budgetText(options.params),
+                        counted(report.cells.size(), "cell"), report.scene.triangles, options.measure.views,
+                        options.measure.resolution, options.measure.resolution));
   if (!report.complete) html.text("Stopped before all cells were compared: these are the first of them.");
   html.section("At the whole budget");
   html.table(summaryTable(report, points.back()));

@@ -76,9 +76,10 @@ uint64_t PvsDifference::count(size_t device, Verdict verdict) const {
 }
 
 PvsDifference comparePvs(const Judge& judge, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
-                         Device& first, Device& other, const BakeParams& params, const RoundingLimit& limit) {
-  const CellPvs a = bakeCell(first, scene, cell, cell_index, params);
-  const CellPvs b = bakeCell(other, scene, cell, cell_index, params);
+                         Device& first, Device& other, const BakeParams& params, const RoundingLimit& limit,
+                         const BakeHooks& hooks) {
+  const CellPvs a = bakeCell(first, scene, cell, cell_index, params, hooks);
+  const CellPvs b = bakeCell(other, scene, cell, cell_index, params, hooks);
   PvsDifference result;
   result.cell = cell.name;
   result.sizes = {a.triangles.size(), b.triangles.size()};

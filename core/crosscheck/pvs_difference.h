@@ -35,10 +35,11 @@ struct PvsDifference {
   uint64_t count(size_t device, Verdict verdict) const;
 };
 
-/// Bakes the cell on both devices, which hold `scene`, and explains the difference. Throws Error.
+/// Bakes the cell on both devices, which hold `scene`, and explains the difference. hooks: of both bakes.
+/// Throws Error, Interrupted.
 PvsDifference comparePvs(const Judge& judge, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
                          Device& first, Device& other, const BakeParams& params,
-                         const RoundingLimit& limit = {});
+                         const RoundingLimit& limit = {}, const BakeHooks& hooks = {});
 
 /// A line a cell for the pair.
 std::string pvsDifferenceTable(const std::string& first, const std::string& other,

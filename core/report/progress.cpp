@@ -80,9 +80,9 @@ std::string progressLine(const std::string& name, uint32_t index, size_t cells, 
 }
 
 std::string doneLine(uint32_t index, size_t cells, const CellSummary& cell) {
-  return fmt::format("{}  done: PVS {}  {} rays  {:.2f} Mrays/s  {} iterations  {}",
-                     place(cell.cell.name, index, cells), cell.pvs_size, shortCount(cell.rays()),
-                     cell.mraysPerSecond(), cell.stats.iterations, shortDuration(cell.stats.seconds));
+  return fmt::format("{}  done: PVS {}  {} rays  {:.2f} Mrays/s  {}  {}", place(cell.cell.name, index, cells),
+                     cell.pvs_size, shortCount(cell.rays()), cell.mraysPerSecond(),
+                     counted(cell.stats.iterations, "iteration"), shortDuration(cell.stats.seconds));
 }
 
 ProgressPrinter::ProgressPrinter(std::FILE* out, uint32_t columns, std::vector<ViewCell> planned,

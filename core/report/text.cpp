@@ -33,6 +33,10 @@ std::string shortCount(uint64_t count) {
   return fmt::format("{:.{}f}{}", value, decimals, *unit);
 }
 
+std::string counted(uint64_t count, const std::string& noun) {
+  return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
+}
+
 std::string shortDuration(double seconds) {
   if (!(seconds >= 0) || seconds > 1e9) return "?";
   if (seconds < 9.95) return fmt::format("{:.1f} s", seconds);

@@ -52,6 +52,9 @@ TEST(PvsDifference, TellsOtherRaysFromRealDisagreement) {
   EXPECT_EQ(difference.only[0], 0u);
   EXPECT_EQ(difference.count(0, Verdict::kMissed), difference.disputed.size());
   EXPECT_EQ(pvsDifferenceJson("a", "b", {difference})["cells"][0]["disputed"][0]["found_by"], "b");
+
+  const std::atomic<bool> stop = true;
+  EXPECT_THROW(comparePvs(judge, scene, cell, 0, *cpu, wrong, params, {}, {.stop = &stop}), Interrupted);
 }
 
 }  // namespace

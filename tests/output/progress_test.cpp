@@ -49,6 +49,7 @@ size_t count(const std::string& text, char c) {
 }
 
 TEST(Text, CountsAndDurationsAreShort) {
+  EXPECT_EQ(counted(0, "cell") + counted(1, "cell") + counted(2, "cell"), "0 cells1 cell2 cells");
   EXPECT_EQ(shortCount(0), "0");
   EXPECT_EQ(shortCount(999), "999");
   EXPECT_EQ(shortCount(1000), "1.00k");
