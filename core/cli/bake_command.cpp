@@ -138,7 +138,7 @@ void drawCells(const BakeOptions& options, const Scene& scene, Device& device, B
     const double missing = saveCellPictures(trace, scene, pvs.cells[i], i, options.pictures);
     const std::string& name = pvs.cells[i].cell.name;
     const std::string file = (options.pictures / pictureName(name, i)).string();
-    say(fmt::format("{}: {} of the pixels from inside show a missing triangle", file, missing));
+    say(fmt::format("{}: {:.2g} of the pixels from inside show a missing triangle", file, missing));
     if (options.html.empty()) continue;
     page.pictures.push_back({readPicture(file + "-outside.png"), name + " from outside"});
     page.pictures.push_back({readPicture(file + "-inside.png"),

@@ -13,7 +13,7 @@ constexpr size_t kDrawnCells = 10;
 std::string spreadText(const Spread& spread, const char* format, bool several, double factor = 1) {
   const auto number = [&](double value) { return fmt::format(fmt::runtime(format), value * factor); };
   if (!several) return number(spread.median);
-  return fmt::format("{} ({} to {})", number(spread.median), number(spread.low), number(spread.high));
+  return fmt::format("{}\n({} to {})", number(spread.median), number(spread.low), number(spread.high));
 }
 
 ReportTable summaryTable(const ComparisonReport& report, const std::vector<MethodSummary>& summaries) {

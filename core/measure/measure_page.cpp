@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/report/text.h"
+
 namespace sightline {
 namespace {
 
@@ -69,7 +71,7 @@ ReportChart cellsChart(const MeasureReport& report, const std::string& title, Va
 std::string worstViewCaption(const MeasuredSet& set, const MeasuredCell& cell, size_t index) {
   const uint32_t view = cell.worst_views[index];
   const std::string wrong =
-      view == cell.error.worst_view ? fmt::format(", {} wrong pixels", cell.error.max_wrong) : "";
+      view == cell.error.worst_view ? ", " + counted(cell.error.max_wrong, "wrong pixel") : "";
   return fmt::format("{}, {}: view {}{}", cell.cell, set.file, view, wrong);
 }
 
