@@ -2,6 +2,7 @@
 
 #include <array>
 #include <chrono>
+#include <exception>
 
 #include "core/cli/bake_options.h"
 #include "core/cli/command_line.h"
@@ -128,13 +129,18 @@ std::vector<uint8_t> readPicture(const std::filesystem::path& file) {
   return {bytes.view().begin(), bytes.view().end()};
 }
 
-/// Draws the pictures, and adds them to the page if one is written.
-void drawCells(const BakeOptions& options, const Scene& scene, Device& device, BakePage& page) {
+/// Draws the pictures, and adds them to the page if one is written. Returns the exit code.
+int drawCells(const BakeOptions& options, const Scene& scene, Device& device, BakePage& page) {
   const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
     device.traceRays(rays, hits);
   };
   const PvsFile pvs = loadPvs(options.out);
+  const StopSignal stop;
   for (uint32_t i = 0; i < pvs.cells.size(); ++i) {
+    if (stop.exitCode() != 0) {
+      say(fmt::format("stopped: pictures of {} of {} cells are drawn", i, pvs.cells.size()));
+      break;
+    }
     const double missing = saveCellPictures(trace, scene, pvs.cells[i], i, options.pictures);
     const std::string& name = pvs.cells[i].cell.name;
     const std::string file = (options.pictures / pictureName(name, i)).string();
@@ -144,6 +150,7 @@ void drawCells(const BakeOptions& options, const Scene& scene, Device& device, B
     page.pictures.push_back({readPicture(file + "-inside.png"),
                              fmt::format("{} from inside, {:.2g} of the pixels missing", name, missing)});
   }
+  return stop.exitCode();
 }
 
 void writePage(const BakeOptions& options, const BakeReport& report, BakePage& page) {
@@ -165,7 +172,8 @@ void runBake(const BakeOptions& options) {
   checkParams(options.params);
   requireMethodOn(options.params.method, options.device);
   const std::array reports = {options.report, options.html, options.csv};
-  requireSeparate(std::array{options.out, options.report, options.html, options.csv},
+  requireSeparate(std::array{options.out, partFileOf(options.out), options.report, options.html, options.csv,
+                             options.pictures},
                   std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
   for (const std::filesystem::path& file : reports) {
@@ -194,8 +202,16 @@ void runBake(const BakeOptions& options) {
     std::fflush(stdout);
   }
   writeReport(options, bake, report);
-  if (exit_code == 0 && !options.pictures.empty()) drawCells(options, scene, *tracer.device, page);
+  std::exception_ptr problem;  // with the pictures; the curves are not lost for it
+  try {
+    if (exit_code == 0 && !options.pictures.empty()) {
+      exit_code = drawCells(options, scene, *tracer.device, page);
+    }
+  } catch (...) {
+    problem = std::current_exception();
+  }
   writePage(options, report, page);
+  if (problem) std::rethrow_exception(problem);
   if (exit_code != 0) throw ExitCode{exit_code};
 }
 

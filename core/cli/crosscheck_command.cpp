@@ -78,6 +78,12 @@ void run(const CrosscheckCommand& command) {
   std::vector<Device*> pointers;
   for (const std::string& name : command.devices) {
     devices.push_back(makeDevice(name, scene, bvh));
+    for (const Device* earlier : pointers) {
+      if (earlier->info().id != devices.back()->info().id) continue;
+      throw Error(
+          fmt::format("--devices: {} is {}, which is named already; name another", name, earlier->info().id),
+          kExitUsage);
+    }
     pointers.push_back(devices.back().get());
   }
 

@@ -82,10 +82,14 @@ std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile&
   return differences;
 }
 
+std::filesystem::path partFileOf(std::filesystem::path file) {
+  file += ".part";
+  return file;
+}
+
 Bake::Bake(PvsFile wanted, std::filesystem::path file, bool overwrite)
-    : head_(std::move(wanted)), file_(std::move(file)), part_(file_) {
+    : head_(std::move(wanted)), file_(std::move(file)), part_(partFileOf(file_)) {
   head_.cells.clear();
-  part_ += ".part";
   if (file_.empty()) throw Error("the output has no name; name a file to write", kExitUsage);
   if (std::filesystem::is_directory(file_)) {
     throw Error(fmt::format("{}: is a folder; name a file to write", file_.string()));

@@ -28,6 +28,9 @@ struct BakeEvents {
 /// devices give the same sets.
 std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile& wanted);
 
+/// Where a bake into `file` keeps its finished cells until all are there: FILE.part.
+std::filesystem::path partFileOf(std::filesystem::path file);
+
 /// The bake of many cells into one .pvs file, one cell after the other. Finished cells are kept in
 /// "FILE.part" until all are there; the same bake again goes on after them.
 class Bake {

@@ -60,11 +60,9 @@ class CellBake {
       quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
       forecast_.add(iteration_new_);
       if (bound != nullptr) {
-        // After a limit, too, but briefly: to say where the error stands.
-        const uint64_t most = more ? ~uint64_t(0) : rays_ / kRaysBetweenTests + 1;
-        const bool reached = (rays_ >= next_test_ || !more) && testError(*bound, member, most);
-        if (reached && more) stats_.stop = StopReason::kTargetError;
-        more = more && !reached;
+        const bool reached = (rays_ >= next_test_ || !more) && testError(*bound, member);
+        if (reached) stats_.stop = StopReason::kTargetError;
+        more = stats_.stop == StopReason::kConverged;
       } else if (quiet >= params_.quiet_iterations) {
         more = false;
       }
@@ -116,25 +114,34 @@ class CellBake {
 
   double seconds() const { return std::chrono::duration<double>(Clock::now() - start_).count(); }
 
+  bool timeIsUp() const { return params_.max_seconds > 0 && seconds() >= params_.max_seconds; }
+
   /// Whether new triangles are explored.
   bool explores() const { return params_.method != Method::kRandom && params_.method != Method::kRaster; }
 
   /// One iteration's samples before any exploration. false: a limit was reached.
   bool sample() { return params_.method == Method::kRaster ? sampleHemicubes() : sampleRandom(); }
 
-  /// Whether the error of what has been found is below the target. Adds to `member` what is new.
-  bool testError(ErrorBound& bound, std::vector<uint8_t>& member, uint64_t most) {
+  /// Whether the error of what has been found is below the target. Adds to `member` what is new. After a
+  /// limit the test is brief, to say where the error stands; before, the limits end it.
+  bool testError(ErrorBound& bound, std::vector<uint8_t>& member) {
     for (const PvsEntry& entry : device_.readPvs()) member[entry.origin_triangle.w] = 1;
-    validating_ = true;
+    const bool limited = stats_.stop != StopReason::kConverged;
+    uint64_t most = rays_ / kRaysBetweenTests + 1;
+    if (!limited) most = params_.max_rays == 0 ? ~uint64_t(0) : std::max(most, params_.max_rays - rays_);
+    testing_ = true;
     const uint64_t before = bound.rays();
     const bool reached = bound.test(
         [&](std::span<const Ray> rays, std::span<Hit> hits) { device_.traceRays(rays, hits); }, member,
-        [&](uint64_t rays) {
-          stats_.bound_rays = rays;
+        [&](uint64_t left) {
+          stats_.bound_rays = bound.rays();
+          test_left_ = left;
           report(kStageRandom);
+          if (!limited && timeIsUp()) stats_.stop = StopReason::kTimeLimit;
+          return limited || stats_.stop == StopReason::kConverged;
         },
         most);
-    validating_ = false;
+    testing_ = false;
     next_test_ = rays_ + kRaysBetweenTests * (bound.rays() - before);
     stats_.bound_tests = bound.tests();
     stats_.error_bound = bound.bound();
@@ -294,7 +301,7 @@ class CellBake {
     stats_.peak_device_bytes = std::max(stats_.peak_device_bytes, counters.memory_bytes);
     report(stage);
     if (params_.max_rays > 0 && rays_ >= params_.max_rays) stats_.stop = StopReason::kRayLimit;
-    if (params_.max_seconds > 0 && seconds() >= params_.max_seconds) stats_.stop = StopReason::kTimeLimit;
+    if (timeIsUp()) stats_.stop = StopReason::kTimeLimit;
     return stats_.stop == StopReason::kConverged;
   }
 
@@ -323,6 +330,7 @@ class CellBake {
     BakeProgress p;
     p.iteration = stats_.iterations;
     p.stage = stage;
+    p.testing = testing_;
     p.validating = validating_;
     p.rays = rays_ + stats_.validation_rays + stats_.bound_rays;
     p.pvs_size = pvs_size_;
@@ -330,7 +338,8 @@ class CellBake {
     p.queued = pvs_size_ - bordered_;
     p.seconds = seconds();
     // Before the first border rays nobody knows how much there is to explore.
-    const bool known = !explores() || stats_.border.rays > 0 || stats_.iterations > 1 || validating_;
+    const bool known =
+        !explores() || stats_.border.rays > 0 || stats_.iterations > 1 || validating_ || testing_;
     p.seconds_left = known ? secondsDue(double(p.rays) / p.seconds, p.seconds) : -1;
     hooks_.progress(p);
   }
@@ -338,10 +347,10 @@ class CellBake {
   /// Estimate of the seconds until the cell is done: to its limits, or less where T may end it. Negative:
   /// nobody knows.
   double secondsDue(double rays_a_second, double now) const {
-    const double estimate = raysDue() / rays_a_second;
+    const double estimate = (testing_ ? testRaysDue() : raysDue()) / rays_a_second;
     const bool limited = params_.max_seconds > 0 || params_.max_rays > 0;
     const bool endless = params_.threshold == 0 || params_.target_error > 0;
-    if (validating_ || (!limited && !endless)) return estimate;
+    if (validating_ || (!limited && (testing_ || !endless))) return estimate;
     if (!limited) return -1;
     double left = 1e18;
     if (params_.max_seconds > 0) left = params_.max_seconds - now;
@@ -349,8 +358,11 @@ class CellBake {
       left = std::min(left, (double(params_.max_rays) - double(rays_)) / rays_a_second);
     }
     left = std::max(left, 0.0) + double(params_.validation_rays) / rays_a_second;
-    return endless ? left : std::min(left, estimate);
+    return endless && !testing_ ? left : std::min(left, estimate);
   }
+
+  /// Rays until the cell is done, if it passes the test of the error that it is in.
+  double testRaysDue() const { return double(test_left_ + params_.validation_rays); }
 
   /// Estimate of the rays until T ends the cell, if the queue grows no further.
   double raysDue() const {
@@ -395,7 +407,8 @@ class CellBake {
   uint32_t iteration_new_ = 0;
   IterationForecast forecast_;  ///< of the iterations before this one
   uint64_t next_test_ = 0;      ///< rays traced when the error is next tested against the target
-  bool validating_ = false;
+  uint64_t test_left_ = 0;      ///< rays of the test in work
+  bool testing_ = false, validating_ = false;
 };
 
 }  // namespace

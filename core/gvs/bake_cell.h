@@ -14,6 +14,7 @@ namespace sightline {
 struct BakeProgress {
   uint32_t iteration = 0;  ///< 1, 2, ...
   uint32_t stage = 0;      ///< kStage... in work; validation: kStageRandom with validating = true
+  bool testing = false;     ///< in a test of --target-error
   bool validating = false;
   uint64_t rays = 0;  ///< traced so far, validation included
   uint64_t pvs_size = 0;

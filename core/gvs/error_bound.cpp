@@ -55,7 +55,7 @@ void ErrorBound::makeRays(std::vector<Ray>& rays, uint64_t first, uint64_t count
 }
 
 bool ErrorBound::test(const Trace& trace, std::span<const uint8_t> member,
-                      const std::function<void(uint64_t)>& between, uint64_t most) {
+                      const std::function<bool(uint64_t)>& between, uint64_t most) {
   const uint64_t wanted = raysOfTest(++tests_, target_), due = std::min(wanted, most);
   uint64_t traced = 0, missed = 0;
   uint64_t launch = kFirstLaunch;
@@ -77,7 +77,7 @@ bool ErrorBound::test(const Trace& trace, std::span<const uint8_t> member,
     making.wait();
     std::swap(batch_, next_batch_);
     for (const Hit& hit : hits_) missed += hit.triangle != kNoTriangle && member[hit.triangle] == 0;
-    if (between) between(rays_);
+    if (between && !between(due - traced)) break;
   }
   // Ending early does not spoil the bound: it takes more misses than are allowed, so whoever would be wrong
   // about a share at that end would have been wrong at the first launch after which the bound of nine misses

@@ -33,11 +33,11 @@ class ErrorBound {
   ErrorBound(const ViewCell& cell, uint32_t cell_index, uint64_t seed, double target);
 
   /// One more test of a set: member has a byte a triangle of the scene, not 0 for those in the set. The set
-  /// may only have grown since the last test. True: the bound is below the target. between(rays): after every
-  /// launch, with all rays so far; it may throw. most: of the test's rays, where there is no time for all;
-  /// such a test gives a bound, but does not pass.
+  /// may only have grown since the last test. True: the bound is below the target. between(left): after every
+  /// launch, with the rays that are left of this test; false ends it; it may throw. most: of the test's rays,
+  /// where there is no time for all. A test that is not whole gives a bound, but does not pass.
   bool test(const Trace& trace, std::span<const uint8_t> member,
-            const std::function<void(uint64_t)>& between = {}, uint64_t most = ~uint64_t(0));
+            const std::function<bool(uint64_t)>& between = {}, uint64_t most = ~uint64_t(0));
 
   /// The share of wrong pixels is below this with 95 % confidence: the best of all tests. 1 before the first.
   double bound() const { return bound_; }

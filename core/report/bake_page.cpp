@@ -32,13 +32,15 @@ Curve iterationEnds(const Curve& curve) {
 template <typename X>
 ReportChart sizeChart(const BakeReport& report, const std::vector<Curve>& curves, const std::string& x_name,
                       X&& x) {
-  ReportChart chart{.title = "Set size over " + x_name,
-                    .note = fmt::format("A dot: after the first iteration with fewer than {} new triangles.",
-                                        kExampleThreshold),
-                    .x = x_name,
-                    .y = "triangles",
-                    .log_x = true,
-                    .log_y = true};
+  ReportChart chart{
+      .title = "Set size over " + x_name,
+      .note = fmt::format(
+          "Large dot: the first iteration with fewer than {0} new triangles, where T = {0} stops.",
+          kExampleThreshold),
+      .x = x_name,
+      .y = "triangles",
+      .log_x = true,
+      .log_y = true};
   for (size_t i = 0; i < curves.size(); ++i) {
     if (curves[i].empty()) continue;
     ChartSeries line{.name = report.cells[i].cell.name, .color = uint32_t(i)};
@@ -78,11 +80,14 @@ std::string shareText(double share) {
 
 ReportTable cellsTable(const BakeReport& report) {
   ReportTable table{.columns = {"cell", "triangles", "of the scene", "rays", "Mrays/s", "iterations",
-                                "by random", "by border", "by reverse", "contained", "missing rays at most",
-                                "seconds", "ended by"}};
+                                "by random", "by border", "by reverse", "missing rays at most", "seconds",
+                                "ended by"}};
   const bool bounded =
       std::ranges::any_of(report.cells, [](const auto& c) { return c.stats.bound_tests > 0; });
+  const bool contains =
+      std::ranges::any_of(report.cells, [](const auto& c) { return c.stats.contained_triangles > 0; });
   if (bounded) table.columns.push_back("error at most");
+  if (contains) table.columns.push_back("contained");
   for (const CellSummary& cell : report.cells) {
     const CellStats& s = cell.stats;
     const double share =
@@ -91,11 +96,12 @@ ReportTable cellsTable(const BakeReport& report) {
         {cell.cell.name, std::to_string(cell.pvs_size), shareText(share), shortCount(cell.rays()),
          fmt::format("{:.2f}", cell.mraysPerSecond()), std::to_string(s.iterations),
          std::to_string(s.random.new_triangles), std::to_string(s.border.new_triangles),
-         std::to_string(s.reverse.new_triangles), std::to_string(s.contained_triangles),
+         std::to_string(s.reverse.new_triangles),
          s.validation_rays == 0 ? "not measured" : fmt::format("{:.2g}", cell.missingBound()),
          fmt::format("{:.2f}", s.seconds), stopReasonName(s.stop)});
     if (bounded)
       table.rows.back().push_back(s.bound_tests > 0 ? fmt::format("{:.3g}", s.error_bound) : "not tested");
+    if (contains) table.rows.back().push_back(std::to_string(s.contained_triangles));
   }
   return table;
 }
@@ -180,8 +186,10 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
   html.section("Cells");
   html.table(cellsTable(report));
   html.text(
-      "Missing rays at most: upper end of the 95 % interval of the share of fresh random rays that hit a "
-      "triangle outside the set. Error at most: the same of wrong pixels, where a target was set.");
+      std::string(
+          "Missing rays at most: upper end of the 95 % interval of the share of fresh random rays that hit a "
+          "triangle outside the set.") +
+      (report.params.target_error > 0 ? " Error at most: the same of wrong pixels." : ""));
   addGrowth(html, report, page.curves);
   if (!page.pictures.empty()) {
     html.section("Pictures");

@@ -34,18 +34,28 @@ size_t width(const std::string& text) {
   return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
-/// Makes the line fit: single instead of double blanks, then a shorter name, then no end. The name is the
-/// line's beginning.
-std::string fit(std::string line, const std::string& name, uint32_t columns) {
-  if (width(line) <= columns) return line;
+/// The line with single instead of double blanks, and with a shorter name if that is not enough.
+std::string tighten(std::string line, const std::string& name, uint32_t columns) {
   for (size_t at = line.find("  ", name.size()); at != std::string::npos; at = line.find("  ", at)) {
     line.erase(at, 1);
   }
   const size_t excess = width(line) - std::min<size_t>(width(line), columns);
   const size_t name_width = width(name);
-  if (excess == 0 || name_width <= kShortestName) return cut(line, columns);
+  if (excess == 0 || name_width <= kShortestName) return line;
   const size_t kept = std::max(kShortestName, name_width - std::min(name_width, excess + 1));
-  return cut(cut(name, uint32_t(kept)) + "~" + line.substr(name.size()), columns);
+  return cut(name, uint32_t(kept)) + "~" + line.substr(name.size());
+}
+
+/// Makes the line fit: tightens it, then leaves out its last fields, which double blanks part: a number cut
+/// in two would be another one. The name is the line's beginning.
+std::string fit(std::string line, const std::string& name, uint32_t columns) {
+  if (width(line) <= columns) return line;
+  for (;;) {
+    const std::string text = tighten(line, name, columns);
+    const size_t last = line.rfind("  ");
+    if (width(text) <= columns || last == std::string::npos || last < name.size()) return cut(text, columns);
+    line.erase(last);
+  }
 }
 
 std::string place(const std::string& name, uint32_t index, size_t cells) {
@@ -72,11 +82,13 @@ uint32_t terminalColumns(std::FILE* out) {
 std::string progressLine(const std::string& name, uint32_t index, size_t cells, const BakeProgress& progress,
                          double all_seconds_left) {
   const double rate = progress.seconds > 0 ? double(progress.rays) / progress.seconds * 1e-6 : 0;
-  return fmt::format("{}  it {} {}  {} rays  {:.2f} Mrays/s  PVS {} +{}  left {}, all {}",
-                     place(name, index, cells), progress.iteration,
-                     progress.validating ? "validation" : stageName(progress.stage),
-                     shortCount(progress.rays), rate, progress.pvs_size, progress.new_triangles,
-                     clock(progress.seconds_left), clock(all_seconds_left));
+  const std::string stage = progress.testing      ? "error test"
+                            : progress.validating ? "validation"
+                                                  : stageName(progress.stage);
+  return fmt::format("{}  it {} {}  {} rays  PVS {} +{}  left {}, all {}  {:.2f} Mrays/s",
+                     place(name, index, cells), progress.iteration, stage, shortCount(progress.rays),
+                     progress.pvs_size, progress.new_triangles, clock(progress.seconds_left),
+                     clock(all_seconds_left), rate);
 }
 
 std::string doneLine(uint32_t index, size_t cells, const CellSummary& cell) {

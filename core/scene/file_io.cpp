@@ -117,7 +117,10 @@ void requireSeparate(std::span<const std::filesystem::path> outputs,
   const auto same = [](const std::filesystem::path& a, const std::filesystem::path& b) {
     std::error_code code;
     if (std::filesystem::equivalent(a, b, code)) return true;
-    return std::filesystem::weakly_canonical(a, code) == std::filesystem::weakly_canonical(b, code);
+    const auto full = [&](const std::filesystem::path& file) {
+      return std::filesystem::weakly_canonical(std::filesystem::absolute(file, code), code);
+    };
+    return full(a) == full(b);
   };
   for (size_t i = 0; i < outputs.size(); ++i) {
     if (outputs[i].empty()) continue;

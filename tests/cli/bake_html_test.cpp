@@ -108,6 +108,19 @@ TEST_F(BakeHtml, CsvHoldsTheCellsOfAnEarlierRun) {
   EXPECT_GT(after["c"].first, 1);
 }
 
+/// Pictures that cannot be drawn do not cost the curves, which no later run has.
+TEST_F(BakeHtml, KeepsPageAndCsvWherePicturesFail) {
+  std::ofstream(folder_ / "cells.json") << R"({"cells":[{"name":"a","center":[0,30,0],"size":[4,2,4]},
+      {"name":"b","center":[0,40,0],"size":[4,2,4]}]})";
+  std::filesystem::create_directories(folder_ / "pictures" / "001-b-outside.png");
+  const ProgramRun run = runProgram(bake("--csv " + path("curves.csv") + " --html " + path("page.html") +
+                                         " --pictures " + path("pictures")));
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+  EXPECT_NE(run.output.find("001-b-outside.png"), std::string::npos) << run.output;
+  EXPECT_GT(linesOf(folder_ / "curves.csv").size(), 3u);
+  EXPECT_NE(textOf(folder_ / "page.html").find("a from outside"), std::string::npos);
+}
+
 TEST_F(BakeHtml, RefusesToReplaceItsInputsAndWhatCannotBeWritten) {
   ProgramRun run = runProgram(bake("--html " + path("city.glb")));
   EXPECT_EQ(run.exit_code, 2) << run.output;

@@ -65,6 +65,7 @@ TEST(CrosscheckCommand, SaysWhatIsWrong) {
   expectRun("crosscheck " + city.input() + " --devices cpu --max-missed -1", 2, {"-1 is not a number"});
   expectRun("crosscheck " + city.input(), 2, {"--devices"});
   expectRun("crosscheck " + city.input() + " --devices cpu,opencl,cpu", 2, {"--devices: cpu is named twice"});
+  expectRun("crosscheck " + city.input() + " --devices opencl,opencl:0", 2, {"which is named already"});
   expectRun("crosscheck " + city.input() + " --devices cpu --pvs", 2, {"--pvs: compares the sets of two"});
   expectRun("crosscheck " + city.input() + " --devices cpu --kinds edge,edge", 2,
             {"--kinds: edge is named twice"});

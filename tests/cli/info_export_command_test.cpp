@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/error.h"
+#include "core/scene/file_io.h"
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"
 
@@ -149,6 +152,12 @@ TEST(OutputFiles, NeverReplaceWhatIsRead) {
   expectFails(quick + "-o " + files.pvs() + " --report " + files.cells(), 2, "would be read and replaced");
   expectFails(quick + "-o " + (files / "n.pvs") + " --report " + (files / "n.pvs"), 2,
               "would be written twice");
+  expectFails(quick + "-o " + (files / "n.pvs") + " --report " + (files / "n.pvs.part"), 2,
+              "would be written twice");
+  expectFails(quick + "-o " + (files / "n.pvs") + " --pictures " + (files / "n.pvs"), 2,
+              "would be written twice");
+  const std::array<std::filesystem::path, 2> spellings = {"n.pvs", "./n.pvs"};
+  EXPECT_THROW(requireSeparate(spellings, {}), Error);
   expectFails("export " + files.pvs() + " --cell 0 --format ids -o " + files.pvs(), 2, "read and replaced");
   expectFails("cells " + files.scene() + " --path 0,0,9 5,0,9 -o " + files.scene(), 2, "read and replaced");
   expectFails("scene city -o " + (files / "n.obj") + " --cells " + (files / "n.obj"), 2, "written twice");

@@ -12,6 +12,7 @@
 #include "core/error.h"
 #include "core/measure/pixel_error.h"
 #include "tests/support/bake_scene.h"
+#include "tests/support/boxes.h"
 #include "tests/support/random_triangles.h"
 
 namespace sightline {
@@ -224,6 +225,28 @@ TEST(TargetError, GivesWayToLimits) {
   EXPECT_LT(pvs.stats.error_bound, 1);
   params.target_error = 1e-12;
   EXPECT_THROW(checkParams(params), Error);
+}
+
+/// Where nothing is missing, a test of this target takes 15 billion rays.
+TEST(TargetError, LimitsEndATest) {
+  testing_support::SceneOfBoxes boxes;
+  boxes.addBox({-4, -3, -5}, {4, 3, 5});
+  const Scene scene = boxes.finish();
+  BakeParams params;
+  params.n_rand = 1000;
+  params.validation_rays = 0;
+  params.target_error = 1e-9;
+  params.max_rays = 100'000;
+  CellPvs pvs = bakeOn("cpu", scene, kCell, params);
+  EXPECT_EQ(pvs.stats.stop, StopReason::kRayLimit);
+  EXPECT_LT(pvs.stats.bound_rays, 200'000u);
+  EXPECT_LT(pvs.stats.error_bound, 1e-3);
+  params.max_rays = 0;
+  params.max_seconds = 0.2;
+  pvs = bakeOn("cpu", scene, kCell, params);
+  EXPECT_EQ(pvs.stats.stop, StopReason::kTimeLimit);
+  EXPECT_EQ(pvs.stats.bound_tests, 1u);
+  EXPECT_LT(pvs.stats.error_bound, 1e-3);
 }
 
 }  // namespace

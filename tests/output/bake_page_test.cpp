@@ -78,8 +78,20 @@ TEST(BakePage, ShowsTheErrorBoundWhereOneWasTested) {
   report.cells[0].stats.error_bound = 0.00125;
   const std::string html = bakePage(report, page).html();
   EXPECT_NE(html.find("<th scope=\"col\">error at most</th>"), std::string::npos);
-  EXPECT_NE(html.find("<td>0.00125</td></tr>"), std::string::npos);
-  EXPECT_NE(html.find("<td>not tested</td></tr>"), std::string::npos);
+  EXPECT_NE(html.find("<td>0.00125</td>"), std::string::npos);
+  EXPECT_NE(html.find("<td>not tested</td>"), std::string::npos);
+}
+
+TEST(BakePage, CountsContainedTrianglesWhereACellHasSome) {
+  BakePage page;
+  page.curves.resize(2);
+  BakeReport report = exampleReport();
+  for (CellSummary& cell : report.cells) cell.stats.contained_triangles = 0;
+  EXPECT_EQ(bakePage(report, page).html().find("<th scope=\"col\">contained</th>"), std::string::npos);
+  report.cells[1].stats.contained_triangles = 7654;
+  const std::string html = bakePage(report, page).html();
+  EXPECT_NE(html.find("<th scope=\"col\">contained</th>"), std::string::npos);
+  EXPECT_NE(html.find("<td>7654</td></tr>"), std::string::npos);
 }
 
 TEST(BakePage, ListsTheParametersOfTheMethod) {

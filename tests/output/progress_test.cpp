@@ -68,7 +68,7 @@ TEST(Text, CountsAndDurationsAreShort) {
 
 TEST(Progress, LineSaysEverything) {
   EXPECT_EQ(progressLine("street-1", 1, 10, at(2), 190),
-            "street-1 2/10  it 3 border  12.3M rays  6.15 Mrays/s  PVS 12345 +17  left 0:10, all 3:10");
+            "street-1 2/10  it 3 border  12.3M rays  PVS 12345 +17  left 0:10, all 3:10  6.15 Mrays/s");
 }
 
 TEST(Progress, PlainLinesComeAtTheStartEveryFewSecondsAndAtTheEnd) {
@@ -109,7 +109,19 @@ TEST(Progress, ANarrowTerminalShortensTheNameAndKeepsTheTimeLeft) {
   ProgressPrinter printer(out.stream(), 80, cells);
   printer.progress(0, at(2));
   EXPECT_EQ(out.text(),
-            "\ra-st~ 1/3 it 3 border 12.3M rays 6.15 Mrays/s PVS 12345 +17 left 0:10, all 0:34\x1b[K");
+            "\ra-st~ 1/3 it 3 border 12.3M rays PVS 12345 +17 left 0:10, all 0:34 6.15 Mrays/s\x1b[K");
+}
+
+TEST(Progress, ANarrowerTerminalLeavesOutWholeFieldsAndCutsNoNumber) {
+  for (uint32_t columns = 64; columns < 77; ++columns) {
+    Output out;
+    ProgressPrinter printer(out.stream(), columns, threeCells());
+    BakeProgress progress = at(2);
+    progress.rays = 123'000'000'000;
+    printer.progress(0, progress);
+    EXPECT_NE(out.text().find("border 123G rays PVS 12345 +17 left 0:10, all 0:34\x1b[K"), std::string::npos)
+        << out.text();
+  }
 }
 
 TEST(Progress, TimeLeftCountsFinishedCells) {
