@@ -234,9 +234,23 @@ class CellBake {
   }
 
   /// Rays of the next border or reverse batch at most: no more than all before it, so that such a batch runs
-  /// past a limit by less than the limit.
+  /// past a limit by less than the limit; with a limit of time, on a processor, what is likely to end in
+  /// time.
   uint32_t batchRays() const {
-    return static_cast<uint32_t>(std::clamp<uint64_t>(rays_, kFewestBatchRays, params_.batch_rays));
+    const uint64_t most = std::clamp<uint64_t>(rays_, kFewestBatchRays, params_.batch_rays);
+    if (params_.max_seconds == 0 || !device_.info().on_cpu) return static_cast<uint32_t>(most);
+    const double in_time = slowestRate() * std::max(0.0, params_.max_seconds - seconds());
+    return static_cast<uint32_t>(std::clamp(in_time, double(kFewestBatchRays), double(most)));
+  }
+
+  /// Rays a second of border or reverse rays, whichever are slower; before the first, a tenth of the random
+  /// rays', as in a thicket.
+  double slowestRate() const {
+    const auto rate = [](const StageStats& stage) { return double(stage.rays) / stage.seconds; };
+    double slowest = rate(stats_.random) / 10;
+    if (stats_.border.rays > 0) slowest = rate(stats_.border);
+    if (stats_.reverse.rays > 0) slowest = std::min(slowest, rate(stats_.reverse));
+    return slowest;
   }
 
   /// Discontinuities whose reverse rays are still to be traced.
