@@ -68,30 +68,31 @@ TEST(BakePage, WithoutCurvesItStillHasItsTable) {
   EXPECT_NE(html.find("ray limit"), std::string::npos);
 }
 
-TEST(BakePage, ShowsTheErrorBoundWhereOneWasTested) {
+/// The page, without curves.
+std::string pageOf(const BakeReport& report) {
   BakePage page;
-  page.curves.resize(2);
-  BakeReport report = exampleReport();
-  for (CellSummary& cell : report.cells) cell.stats.bound_tests = 0;
-  EXPECT_EQ(bakePage(report, page).html().find("<th scope=\"col\">error at most</th>"), std::string::npos);
-  report.cells[0].stats.bound_tests = 2;
-  report.cells[0].stats.error_bound = 0.00125;
-  const std::string html = bakePage(report, page).html();
-  EXPECT_NE(html.find("<th scope=\"col\">error at most</th>"), std::string::npos);
-  EXPECT_NE(html.find("<td>0.00125</td>"), std::string::npos);
-  EXPECT_NE(html.find("<td>not tested</td>"), std::string::npos);
+  page.curves.resize(report.cells.size());
+  return bakePage(report, page).html();
 }
 
-TEST(BakePage, CountsContainedTrianglesWhereACellHasSome) {
-  BakePage page;
-  page.curves.resize(2);
+TEST(BakePage, HasColumnsForWhatSomeCellsHave) {
+  const auto shows = [](const BakeReport& report, const char* column) {
+    return pageOf(report).find(std::string("<th scope=\"col\">") + column + "</th>") != std::string::npos;
+  };
   BakeReport report = exampleReport();
-  for (CellSummary& cell : report.cells) cell.stats.contained_triangles = 0;
-  EXPECT_EQ(bakePage(report, page).html().find("<th scope=\"col\">contained</th>"), std::string::npos);
+  for (CellSummary& cell : report.cells) {
+    cell.stats.bound_tests = 0;
+    cell.stats.contained_triangles = 0;
+  }
+  EXPECT_FALSE(shows(report, "error at most"));
+  EXPECT_FALSE(shows(report, "contained"));
+  report.cells[0].stats.bound_tests = 2;
+  report.cells[0].stats.error_bound = 0.00125;
   report.cells[1].stats.contained_triangles = 7654;
-  const std::string html = bakePage(report, page).html();
-  EXPECT_NE(html.find("<th scope=\"col\">contained</th>"), std::string::npos);
-  EXPECT_NE(html.find("<td>7654</td></tr>"), std::string::npos);
+  EXPECT_TRUE(shows(report, "error at most"));
+  EXPECT_TRUE(shows(report, "contained"));
+  EXPECT_NE(pageOf(report).find("<td>0.00125</td><td>0</td></tr>"), std::string::npos);
+  EXPECT_NE(pageOf(report).find("<td>not tested</td><td>7654</td></tr>"), std::string::npos);
 }
 
 TEST(BakePage, ListsTheParametersOfTheMethod) {
