@@ -82,9 +82,9 @@ void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, 
   report.set = tracer.device->counters().hash_set ? "hash" : "array";
   say(fmt::format("device: {}, {}", report.device->id, report.device->name));
   if (const DeviceInfo& info = *report.device; info.driver_tree_parts > 0) {
-    say(fmt::format("driver's tree: built in {}, {:.1f} MiB in {} part{}",
+    say(fmt::format("driver's tree: built in {}, {:.1f} MiB in {}",
                     shortDuration(info.driver_tree_build_seconds), double(info.driver_tree_bytes) / 0x1p20,
-                    info.driver_tree_parts, info.driver_tree_parts == 1 ? "" : "s"));
+                    counted(info.driver_tree_parts, "part")));
   }
 }
 

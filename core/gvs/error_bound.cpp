@@ -81,7 +81,8 @@ bool ErrorBound::test(const Trace& trace, std::span<const uint8_t> member,
   }
   // Ending early does not spoil the bound: it takes more misses than are allowed, so whoever would be wrong
   // about a share at that end would have been wrong at the first launch after which the bound of nine misses
-  // is below that share, too: one event, of probability alpha at most.
+  // is below that share, too: one event, of probability alpha at most. Where `between` or `most` ends it, no
+  // miss has a say in that.
   bound_ = std::min(bound_, missingUpperBound(missed, traced, alpha(tests_)));
   return traced == wanted && missed <= kAllowedMisses;
 }
