@@ -92,9 +92,9 @@ static inline Ray borderRayAt(BorderBatch batch, StageParams params, uint entry,
   if (isGvs(params)) {
     const uint first = gvsFirstVertex(k), second = gvsSecondVertex(k);
     const float3 from = gvsVertexOf(edges[first / 3], first);
-    return rayTo(origin, gvsPoint(from, gvsVertexOf(edges[second / 3], second), k));
+    return gvsBorderRay(from, gvsVertexOf(edges[second / 3], second), k, origin, params);
   }
-  return borderRay(edges[borderSide(k, slUint(edges->bisector.w))], k, origin);
+  return borderRay(edges[borderSide(k, slUint(edges->bisector.w))], k, origin, params);
 }
 
 /// The item of a discontinuity. number: its running number in the cell.
@@ -133,7 +133,9 @@ static inline Ray reverseRayAt(__global const ReverseItem* items, __global const
   if (item.number.z == 0) return noRay();
   if (isGvs(params)) {
     Ray ray = noRay();
-    for (uint f = 0; f < params.counts.w && !hasDirection(ray); ++f) ray = gvsReverseRay(item, faces[f], k);
+    for (uint f = 0; f < params.counts.w && !hasDirection(ray); ++f) {
+      ray = gvsReverseRay(item, faces[f], k, params);
+    }
     return ray;
   }
   return reverseRay(item, faces[reverseFace(item, k)], k, params);

@@ -84,10 +84,12 @@ Ray borderRayAt(uint index) {
   uvec4 entry = Entries(SL_LAUNCH.entries).at[SL_LAUNCH.border_first + entry_index].origin_triangle;
   if (isGvs(params)) {
     vec3 first = borderVertexAt(entry_index, gvsFirstVertex(k));
-    return rayTo(borderOrigin(entry), gvsPoint(first, borderVertexAt(entry_index, gvsSecondVertex(k)), k));
+    vec3 second = borderVertexAt(entry_index, gvsSecondVertex(k));
+    return gvsBorderRay(first, second, k, borderOrigin(entry), params);
   }
   uint side = borderSide(k, borderSamplesAt(entry_index));
-  return borderRay(BorderEdges(SL_LAUNCH.border_edges).at[3u * entry_index + side], k, borderOrigin(entry));
+  BorderEdge edge = BorderEdges(SL_LAUNCH.border_edges).at[3u * entry_index + side];
+  return borderRay(edge, k, borderOrigin(entry), params);
 }
 
 /// The item of discontinuity `place` (0 ..) of those that wait: for reverse_items.
@@ -129,7 +131,7 @@ Ray reverseRayAt(uint index) {
   if (isGvs(params)) {
     Ray ray = noRay();
     for (uint f = 0u; f < params.counts.w && !hasDirection(ray); ++f) {
-      ray = gvsReverseRay(item, Faces(SL_LAUNCH.faces).at[f], k);
+      ray = gvsReverseRay(item, Faces(SL_LAUNCH.faces).at[f], k, params);
     }
     return ray;
   }

@@ -37,7 +37,7 @@ BakeParams searchParams(uint64_t seed) {
   return params;
 }
 
-StageParams stageParams(const BakeParams& params, size_t faces, uint64_t key) {
+StageParams stageParams(const BakeParams& params, std::span<const Face> faces, uint64_t key) {
   RayRandom random(key, kShiftsKey);
   const uint32_t base2 = uint32_t(random.bits() >> 32), base3 = random.pick(kHaltonPeriod3);
   const uint32_t base5 = random.pick(kHaltonPeriod5), base7 = random.pick(kHaltonPeriod7);
@@ -83,7 +83,7 @@ RayMaker::RayMaker(const Scene& scene, const ViewCell& cell, uint32_t cell_index
   const vec3 extent = bounds.high - bounds.low, half = glm::abs(vec3(faces_[0].corner) - bounds.low);
   reach_ = std::max(maxAbs3(extent), maxAbs3(half));
   const BakeParams params = searchParams(seed);
-  params_ = stageParams(params, faces_.size(), key_);
+  params_ = stageParams(params, faces_, key_);
   bakeCell(device, scene, cell, cell_index, params, {.stop = stop});
   entries_ = device.readPvs();
   std::erase_if(entries_, [](const PvsEntry& entry) { return entry.direction_stage.w == kStageContained; });

@@ -8,10 +8,10 @@
 namespace sightline {
 
 // GLSL's scalar layout pads nothing and aligns each member by its own components: so must C++.
-static_assert(offsetof(VulkanLaunch, tlas) == 160 && alignof(VulkanLaunch) == 8);
-static_assert(sizeof(VulkanLaunch) == 160 + 32 * sizeof(uint64) + 20 * sizeof(uint));
+static_assert(offsetof(VulkanLaunch, tlas) == 176 && alignof(VulkanLaunch) == 8);
+static_assert(sizeof(VulkanLaunch) == 176 + 32 * sizeof(uint64) + 20 * sizeof(uint));
 static_assert(sizeof(Face) == 96 && sizeof(Ray) == 32 && sizeof(Hit) == 8 && sizeof(PvsEntry) == 32);
-static_assert(sizeof(RandomSegment) == 64 && sizeof(StageParams) == 80 && sizeof(ViewFrame) == 64);
+static_assert(sizeof(RandomSegment) == 64 && sizeof(StageParams) == 96 && sizeof(ViewFrame) == 64);
 
 namespace {
 

@@ -44,7 +44,7 @@ class CellBake {
                                                                         : kRandomLaunchRaysGpu),
         yield_(params.batch_rays) {
     stage_params_ =
-        makeStageParams(params, faces_.size(), haltonShifts(params.seed, cell_index, RandomUse::kSampling));
+        makeStageParams(params, faces_, haltonShifts(params.seed, cell_index, RandomUse::kSampling));
     if (params.method == Method::kRaster) near_distance_ = hemicubeNear(scene, faces_);
     device_.beginCell(faces_, stage_params_);
   }

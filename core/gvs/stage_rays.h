@@ -135,9 +135,9 @@ class BorderRays {
     if (isGvs(*params_)) {
       const uint32_t first = gvsFirstVertex(k), second = gvsSecondVertex(k);
       const vec3 from = gvsVertexOf(side(first / 3), first);
-      return rayTo(origin, gvsPoint(from, gvsVertexOf(side(second / 3), second), k));
+      return gvsBorderRay(from, gvsVertexOf(side(second / 3), second), k, origin, *params_);
     }
-    return borderRay(side(borderSide(k, samples_)), k, origin);
+    return borderRay(side(borderSide(k, samples_)), k, origin, *params_);
   }
 
  private:
@@ -193,13 +193,15 @@ inline ReverseItem reverseItemOf(const Scene& scene, std::span<const Face> faces
 }
 
 /// Reverse ray k of a discontinuity; without direction where no face looks at it, or its start point sees
-/// nothing but the occluder, or, in the original method, lies outside the cell.
+/// nothing but the occluder, or, in the original method, lies outside the cell, or the cell does not look.
 inline Ray reverseRayOf(const ReverseItem& item, std::span<const Face> faces, uint32_t k,
                         const StageParams& params) {
   if (item.number.z == 0) return noRay();
   if (!isGvs(params)) return reverseRay(item, faces[reverseFace(item, k)], k, params);
   Ray ray = noRay();
-  for (size_t f = 0; f < faces.size() && !hasDirection(ray); ++f) ray = gvsReverseRay(item, faces[f], k);
+  for (size_t f = 0; f < faces.size() && !hasDirection(ray); ++f) {
+    ray = gvsReverseRay(item, faces[f], k, params);
+  }
   return ray;
 }
 

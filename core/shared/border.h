@@ -18,8 +18,7 @@
 // % are below a tenth of a pixel, and their neighbours need no twenty samples an edge.
 #ifndef SL_BORDER_H
 #define SL_BORDER_H
-#include "core/shared/ray.h"
-#include "core/shared/stage_params.h"
+#include "core/shared/look.h"
 SL_NAMESPACE_BEGIN
 
 /// Samples between the ends of a long edge at least, where the spacing decides.
@@ -106,6 +105,26 @@ SL_STRUCT(BorderEdge) {
   vec4 end;
 };
 
+/// The side with its long edge cut off where a flat cell no longer looks; as it is where the cell looks at
+/// both ends, or at none.
+SL_FUNC BorderEdge cutToLook(BorderEdge edge, vec3 origin, StageParams params) {
+  if (!looksOneWay(params)) return edge;
+  vec3 start = sub3(xyz3(edge.start), origin);
+  vec3 end = sub3(xyz3(edge.end), origin);
+  float least = kCutSlope * max(maxAbs3(start), maxAbs3(end));
+  float start_height = dot3(start, xyz3(params.look));
+  float end_height = dot3(end, xyz3(params.look));
+  if ((start_height >= least) == (end_height >= least)) return edge;
+  float t = slDivide(least - start_height, end_height - start_height);
+  vec4 cut = edge.start * (1.0f - t) + edge.end * t;
+  if (start_height < least) {
+    edge.start = cut;
+  } else {
+    edge.end = cut;
+  }
+  return edge;
+}
+
 /// Side 0, 1 or 2 of the border polygon of triangle p0 p1 p2 seen from origin.
 SL_FUNC BorderEdge borderEdge(vec3 p0, vec3 p1, vec3 p2, uint side, vec3 origin, StageParams params) {
   vec3 a = side == 0u ? p0 : (side == 1u ? p1 : p2);
@@ -119,7 +138,7 @@ SL_FUNC BorderEdge borderEdge(vec3 p0, vec3 p1, vec3 p2, uint side, vec3 origin,
   edge.bisector = vec4(bisector.x, bisector.y, bisector.z, samples);
   edge.start = vec4(start.x, start.y, start.z, 0.0f);
   edge.end = vec4(end.x, end.y, end.z, 0.0f);
-  return edge;
+  return cutToLook(edge, origin, params);
 }
 
 /// The side that point k (0 .. borderRayCount - 1) of a polygon lies on: it has its bisector vertex, both
@@ -144,9 +163,9 @@ SL_FUNC vec3 borderPoint(BorderEdge edge, uint k) {
   return add3(scale3(xyz3(edge.start), 1.0f - t), scale3(xyz3(edge.end), t));
 }
 
-/// The ray from origin to point k: t = 1 there (x_target).
-SL_FUNC Ray borderRay(BorderEdge edge, uint k, vec3 origin) {
-  return rayTo(origin, borderPoint(edge, k));
+/// The ray from origin to point k: t = 1 there (x_target). Without direction where the cell does not look.
+SL_FUNC Ray borderRay(BorderEdge edge, uint k, vec3 origin, StageParams params) {
+  return whereCellLooks(rayTo(origin, borderPoint(edge, k)), params);
 }
 
 /// Whether a border ray meets a discontinuity (equation 5.7): it hits nothing, or something nearer than its

@@ -45,18 +45,7 @@ SL_FUNC bool gvsDivides(uint before, uint after) {
   return before != after && before != kNotTraced && after != kNotTraced;
 }
 
-/// Vertex 0 .. 8 of the border polygon of triangle p0 p1 p2 seen from origin.
-SL_FUNC vec3 gvsVertex(vec3 p0, vec3 p1, vec3 p2, uint vertex, vec3 origin, StageParams params) {
-  uint side = vertex / 3u;
-  uint place = vertex - side * 3u;
-  vec3 a = side == 0u ? p0 : (side == 1u ? p1 : p2);
-  vec3 b = side == 0u ? p1 : (side == 1u ? p2 : p0);
-  vec3 c = side == 0u ? p2 : (side == 1u ? p0 : p1);
-  if (place == 2u) return borderVertex(b, c, a, 2u, origin, params);
-  return borderVertex(a, b, c, place, origin, params);
-}
-
-/// The same vertex of its side, vertex / 3, of the polygon.
+/// Vertex 0 .. 8 of the border polygon, of its side vertex / 3.
 SL_FUNC vec3 gvsVertexOf(BorderEdge edge, uint vertex) {
   uint place = vertex % 3u;
   return xyz3(place == 0u ? edge.bisector : (place == 1u ? edge.start : edge.end));
@@ -77,14 +66,22 @@ SL_FUNC vec3 gvsPoint(vec3 first, vec3 second, uint position) {
   return eighths == 0u ? first : add3(scale3(first, 1.0f - t), scale3(second, t));
 }
 
+/// Ray k to a border polygon of the original method. first, second: the vertices of gvsFirstVertex and
+/// gvsSecondVertex. Without direction where the cell does not look.
+SL_FUNC Ray gvsBorderRay(vec3 first, vec3 second, uint k, vec3 origin, StageParams params) {
+  return whereCellLooks(rayTo(origin, gvsPoint(first, second, k)), params);
+}
+
 /// Ray k to the border polygon of triangle p0 p1 p2, by the method of the parameters. samples: borderSamples.
 SL_FUNC Ray polygonRay(vec3 p0, vec3 p1, vec3 p2, uint k, uint samples, vec3 origin, StageParams params) {
   if (!isGvs(params)) {
-    return borderRay(borderEdge(p0, p1, p2, borderSide(k, samples), origin, params), k, origin);
+    return borderRay(borderEdge(p0, p1, p2, borderSide(k, samples), origin, params), k, origin, params);
   }
-  vec3 first = gvsVertex(p0, p1, p2, gvsFirstVertex(k), origin, params);
-  vec3 second = gvsVertex(p0, p1, p2, gvsSecondVertex(k), origin, params);
-  return rayTo(origin, gvsPoint(first, second, k));
+  uint first = gvsFirstVertex(k);
+  uint second = gvsSecondVertex(k);
+  BorderEdge from = borderEdge(p0, p1, p2, first / 3u, origin, params);
+  BorderEdge to = borderEdge(p0, p1, p2, second / 3u, origin, params);
+  return gvsBorderRay(gvsVertexOf(from, first), gvsVertexOf(to, second), k, origin, params);
 }
 
 /// Where the ray meets the plane of triangle p0 p1 p2, in units of its direction; 0 where it runs beside it.

@@ -74,8 +74,9 @@ SL_FUNC ReverseItem gvsReverseItem(ReverseItem item, Ray found, vec3 p0, vec3 p1
   return item;
 }
 
-/// Reverse ray k, 0 or 1, of an item of gvsReverseItem, if its origin lies on the face; else none.
-SL_FUNC Ray gvsReverseRay(ReverseItem item, Face face, uint k) {
+/// Reverse ray k, 0 or 1, of an item of gvsReverseItem, if its origin lies on the face and the cell looks
+/// along it; else none.
+SL_FUNC Ray gvsReverseRay(ReverseItem item, Face face, uint k, StageParams params) {
   vec3 target = xyz3(item.target);
   if (item.number.w == 0u || !faceLooksAt(face, target)) return noRay();
   vec3 line = sub3(k == 0u ? xyz3(item.a) : xyz3(item.b), target);
@@ -90,7 +91,7 @@ SL_FUNC Ray gvsReverseRay(ReverseItem item, Face face, uint k) {
   if (!inside) return noRay();
   vec3 along_u = scale3(xyz3(face.axis_u), u);
   vec3 along_v = scale3(xyz3(face.axis_v), v);
-  return rayTo(add3(add3(xyz3(face.corner), along_u), along_v), target);
+  return whereCellLooks(rayTo(add3(add3(xyz3(face.corner), along_u), along_v), target), params);
 }
 
 SL_NAMESPACE_END

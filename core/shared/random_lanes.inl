@@ -106,14 +106,15 @@ SL_STRUCT(SL_LANES(HemisphereDirection)) {
   SL_FLOATS z;
 };
 
-/// Uniform over the hemisphere for numbers of 24 bits (equation 5.3 with z = 1 - h).
+/// Uniform over the hemisphere for numbers of 24 bits (equation 5.3 with z = 1 - h), but for directions that
+/// rise by less than 2^-18: those rise by that, so that rounding turns none of them into the cell (look.h).
 SL_FUNC SL_LANES(HemisphereDirection) SL_LANES(hemisphereDirection)(SL_UINTS azimuth24, SL_UINTS height24) {
   SL_UINTS quadrant = azimuth24 >> 22;
   SL_UINTS odd = quadrant & 1u;
   SL_FLOATS within = SL_TO_FLOATS(azimuth24 & 0x3fffffu) * 2.384185791015625e-7f;  // exact, [0, 1)
   SL_FLOATS s = SL_LANES(sinQuarter)(within);
   SL_FLOATS c = SL_LANES(sinQuarter)(1.0f - within);
-  SL_FLOATS height = SL_LANES(haltonFraction)(height24);
+  SL_FLOATS height = SL_LANES(haltonFraction)(min(height24, 0xffffc0u));
   SL_LANES(HemisphereDirection) direction;
   direction.z = 1.0f - height;
   SL_FLOATS r = sqrt(height * (1.0f + direction.z));

@@ -8,8 +8,7 @@
 #ifndef SL_REVERSE_H
 #define SL_REVERSE_H
 #include "core/shared/halton.h"
-#include "core/shared/ray.h"
-#include "core/shared/stage_params.h"
+#include "core/shared/look.h"
 #include "core/shared/triangle.h"
 SL_NAMESPACE_BEGIN
 
@@ -107,9 +106,10 @@ SL_FUNC bool segmentMeetsOccluder(Ray ray, ReverseItem item) {
 }
 
 /// Reverse ray k of the item, from `face` = reverseFace(item, k); without direction where its start point
-/// sees nothing but the occluder. The item's mask of faces must not be 0.
+/// sees nothing but the occluder, or the cell does not look. The item's mask of faces must not be 0.
 SL_FUNC Ray reverseRay(ReverseItem item, Face face, uint k, StageParams params) {
-  Ray ray = rayTo(reverseOrigin(face, reverseItemNumber(item), k, params), xyz3(item.target));
+  vec3 origin = reverseOrigin(face, reverseItemNumber(item), k, params);
+  Ray ray = whereCellLooks(rayTo(origin, xyz3(item.target)), params);
   if (segmentMeetsOccluder(ray, item)) ray.direction = vec4(0.0f, 0.0f, 0.0f, 0.0f);
   return ray;
 }

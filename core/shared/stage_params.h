@@ -19,6 +19,7 @@ SL_STRUCT(StageParams) {
                    ///< z: delta_RS relative, w: delta_RS in world units; relative and absolute parts add up
   uvec4 method;    ///< x: kSample..., y: reverse stride, 1 or more (keepsDiscontinuity)
   vec4 spacing;    ///< x: of border samples, seen from the ray's origin (borderSamples); 0: always n_ABSEdge
+  vec4 look;       ///< xyz: normal of a flat cell, which looks that way only; 0: looks all around (look.h)
 };
 
 SL_FUNC bool isGvs(StageParams params) {

@@ -164,7 +164,7 @@ void bench(const Options& options) {
     const CellPvs pvs = bakeCell(*device, scene, cells[c], c, options.params);
     std::vector<PvsEntry> entries = device->readPvs();
     std::erase_if(entries, [](const PvsEntry& entry) { return entry.direction_stage.w == kStageContained; });
-    const StageParams params = makeStageParams(options.params, cellFaces(cells[c]).size(), uvec4(0));
+    const StageParams params = makeStageParams(options.params, cellFaces(cells[c]), uvec4(0));
     Waste waste;
     for (size_t first = 0; first < entries.size(); first += kChunkEntries) {
       const size_t count = std::min(kChunkEntries, entries.size() - first);

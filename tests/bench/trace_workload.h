@@ -56,13 +56,14 @@ inline void addRandomRays(Workload& work, const ViewCell& cell, uint32_t count) 
 
 /// Border rays of the triangles that a cell's rays found, all samples, in ascending id, each from the first
 /// ray's origin: as the device's list has them after a batch.
-inline void addBorderRays(Workload& work, const CpuTracer& tracer, size_t first, size_t last, size_t count) {
+inline void addBorderRays(Workload& work, const CpuTracer& tracer, const ViewCell& cell, size_t first,
+                          size_t count) {
   BakeParams defaults;
   defaults.abs_spacing = 0;
-  const StageParams params = makeStageParams(defaults, 1, uvec4(0));
+  const StageParams params = makeStageParams(defaults, cellFaces(cell), uvec4(0));
   const uint32_t samples = params.counts.x, per_entry = borderRayCount(samples, params);
   std::map<uint32_t, vec3> found;
-  for (size_t i = first; i < last && found.size() * per_entry < count; ++i) {
+  for (size_t i = first; i < work.random.size() && found.size() * per_entry < count; ++i) {
     const Hit hit = tracer.trace(work.random[i]);
     if (hit.triangle != kNoTriangle) found.emplace(hit.triangle, vec3(work.random[i].origin));
   }
@@ -70,8 +71,8 @@ inline void addBorderRays(Workload& work, const CpuTracer& tracer, size_t first,
     const glm::uvec3 v = work.scene.triangles[id];
     const auto& p = work.scene.positions;
     for (uint32_t k = 0; k < per_entry; ++k) {
-      work.border.push_back(
-          borderRay(borderEdge(p[v.x], p[v.y], p[v.z], borderSide(k, samples), origin, params), k, origin));
+      const Ray ray = polygonRay(p[v.x], p[v.y], p[v.z], k, samples, origin, params);
+      if (hasDirection(ray)) work.border.push_back(ray);
     }
   }
 }
@@ -86,7 +87,7 @@ inline Workload makeWorkload(uint64_t triangles, uint32_t rays, const BvhConfig&
     if (!cell.name.ends_with("-1")) continue;
     const size_t first = work.random.size();
     addRandomRays(work, cell, rays);
-    addBorderRays(work, tracer, first, work.random.size(), rays / 2);
+    addBorderRays(work, tracer, cell, first, rays / 2);
   }
   return work;
 }

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
+
+#include "core/shared/gvs_border.h"
 
 namespace sightline {
 namespace {
@@ -15,7 +18,7 @@ StageParams params(uint32_t n_edge, float relative, float absolute) {
 }
 
 Ray rayOf(vec3 a, vec3 b, vec3 c, uint32_t k, vec3 origin, const StageParams& p) {
-  return borderRay(borderEdge(a, b, c, borderSide(k, p.counts.x), origin, p), k, origin);
+  return borderRay(borderEdge(a, b, c, borderSide(k, p.counts.x), origin, p), k, origin, p);
 }
 
 /// Orthonormal frame at right angles to the ray through p: what the ray's origin sees.
@@ -193,6 +196,52 @@ TEST(Discontinuity, IsAMissOrAHitClearlyInFront) {
   EXPECT_FALSE(isDiscontinuity(ray, {1.0f, 3}, p));
   EXPECT_FALSE(isDiscontinuity(ray, {1.0f - 0x1p-11f, 3}, p));
   EXPECT_TRUE(isDiscontinuity(ray, {1.0f - 0x1p-9f, 3}, p));
+}
+
+/// A flat cell's border rays: none runs behind, by exact arithmetic, and those of triangles that lie in front
+/// are what they are without a direction to look in.
+TEST(BorderOfFlatCell, LooksOneWay) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  const auto point = [&] { return vec3(unit(random), unit(random), unit(random)); };
+  uint32_t kept = 0, dropped = 0;
+  for (int round = 0; round < 4000; ++round) {
+    StageParams p = params(5, 0x1p-17f, 0), all_around = p;
+    if (round % 2 == 1) p.method.x = all_around.method.x = kSampleGvs;
+    const vec3 look = normalize3(point()), origin = point() * (round % 3 == 0 ? 1000.0f : 1.0f);
+    p.look = vec4(look, 0);
+    const vec3 a = origin + point(), b = origin + point(), c = origin + point();
+    const auto height = [&](vec3 v) { return glm::dot(glm::dvec3(look), glm::dvec3(v)); };
+    const double lowest = std::min({height(a - origin), height(b - origin), height(c - origin)});
+    for (uint32_t k = 0; k < borderRayCount(5, p); ++k) {
+      const Ray ray = polygonRay(a, b, c, k, 5, origin, p);
+      if (hasDirection(ray)) {
+        ++kept;
+        ASSERT_GT(height(vec3(ray.direction)), 0) << round << ", " << k;
+      } else {
+        ++dropped;
+      }
+      if (lowest < 0.01) continue;
+      ASSERT_EQ(ray.direction, polygonRay(a, b, c, k, 5, origin, all_around).direction) << round << ", " << k;
+    }
+  }
+  EXPECT_GT(kept, 10'000u);
+  EXPECT_GT(dropped, 10'000u);
+}
+
+/// Of an edge through the cell's plane the part in front keeps all samples.
+TEST(BorderOfFlatCell, CutsEdgesAtItsPlane) {
+  StageParams p = params(8, 0x1p-17f, 0);
+  p.look = vec4(0, 0, 1, 0);
+  const vec3 a(1, -1, -7), b(1, -1, 1), c(3, -1, -7);
+  for (uint32_t place = 1; place <= 10; ++place) {  // both ends and the samples between them
+    const Ray ray = rayOf(a, b, c, place, vec3(0), p);
+    ASSERT_TRUE(hasDirection(ray)) << place;
+    EXPECT_NEAR(ray.direction.z, double(place - 1) / 9, 1e-3) << place;
+  }
+  p.look = vec4(0, 0, -1, 0);
+  EXPECT_NEAR(rayOf(a, b, c, 10, vec3(0), p).direction.z, 0, 1e-3);
+  EXPECT_FALSE(hasDirection(rayOf(vec3(1, 0, 1), vec3(2, 0, 1), vec3(1, 1, 1), 4, vec3(0), p)));
 }
 
 }  // namespace

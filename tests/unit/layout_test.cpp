@@ -12,7 +12,7 @@ TEST(Layout, StructsInBuffersHaveTheSizesOfAllThreeLanguages) {
   EXPECT_EQ(sizeof(Hit), 8u);
   EXPECT_EQ(sizeof(Face), 96u);
   EXPECT_EQ(sizeof(PvsEntry), 32u);
-  EXPECT_EQ(sizeof(StageParams), 80u);
+  EXPECT_EQ(sizeof(StageParams), 96u);
   EXPECT_EQ(sizeof(RandomSegment), 64u);
   EXPECT_EQ(sizeof(ViewFrame), 64u);
 }
