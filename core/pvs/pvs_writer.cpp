@@ -11,8 +11,9 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "core/pvs/publish.h"
+
 #include "core/pvs/pvs_sections.h"
+#include "core/scene/publish.h"
 
 namespace sightline {
 namespace {
