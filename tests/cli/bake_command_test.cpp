@@ -266,12 +266,22 @@ TEST(BakeCommand, SameOnAnyNumberOfPoclThreads) {
 TEST(BakeCommand, SaysWhatADamagedPartFileLost) {
   const Workplace place(4);
   ASSERT_EQ(runProgram(place.bake("whole.pvs")).exit_code, 0);
-  std::vector<uint8_t> bytes = readBytes(place / "whole.pvs");
-  bytes[bytes.size() / 2] ^= 1;
+  size_t two_cells = 0;
+  {
+    const PvsFile whole = loadPvs(place / "whole.pvs");
+    PvsWriter part(place / "x.pvs.part");
+    part.begin(whole);
+    for (size_t i = 0; i < whole.cells.size(); ++i) {
+      if (i == 2) two_cells = std::filesystem::file_size(place / "x.pvs.part");
+      part.append(whole.cells[i]);
+    }
+  }
+  std::vector<uint8_t> bytes = readBytes(place / "x.pvs.part");
+  bytes[two_cells + 30] ^= 1;
   writeBytes(place / "x.pvs.part", bytes);
   const ProgramRun run = runProgram(place.bake("x.pvs"));
   ASSERT_EQ(run.exit_code, 0) << run.output;
-  EXPECT_TRUE(contains(run, "x.pvs.part: cut off or damaged after")) << run.output;
+  EXPECT_TRUE(contains(run, "x.pvs.part: cut off or damaged after 2 whole cells")) << run.output;
   expectSameBake(place / "x.pvs", place / "whole.pvs");
 }
 
