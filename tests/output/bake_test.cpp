@@ -133,6 +133,21 @@ TEST(Bake, GoesOnFromAFinishedFileThatHasNotItsNameYet) {
   EXPECT_EQ(Bake(fiveCells(), folder / "x.pvs").resumed(), 5u);
 }
 
+TEST(Bake, AFailureAtTheVeryEndLosesNoCell) {
+  TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "x.pvs.part.tmp");  // where the finished file should be written
+  {
+    Bake bake(fiveCells(), folder / "x.pvs");
+    EXPECT_THROW(bake.run("fake", fakeBaker), Error);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.pvs"));
+  std::filesystem::remove(folder / "x.pvs.part.tmp");
+  Bake again(fiveCells(), folder / "x.pvs");
+  EXPECT_EQ(again.resumed(), 5u);
+  EXPECT_TRUE(again.run("fake", fakeBaker));
+  EXPECT_EQ(loadPvs(folder / "x.pvs").cells.size(), 5u);
+}
+
 /// Times, memory and devices stand behind the rest, and say of each cell what it took itself.
 TEST(Bake, EqualBakesAreEqualBytesUpToWhatTheyTook) {
   TemporaryFolder folder;
