@@ -10,6 +10,7 @@
 #include "core/cli/stop_signal.h"
 #include "core/device/naive_device.h"
 #include "core/error.h"
+#include "core/gvs/algorithm_revision.h"
 #include "core/gvs/bake.h"
 #include "core/report/bake_page.h"
 #include "core/report/cell_pictures.h"
@@ -29,6 +30,8 @@ void say(const std::string& line) {
 /// The inputs, as the head of the file that is to be made.
 PvsFile inputsOf(const BakeOptions& options, const Scene& scene) {
   PvsFile inputs;
+  inputs.algorithm = kAlgorithmRevision;
+  inputs.intersector = intersectorOf(options.device);
   inputs.scene_hash = hashScene(scene);
   inputs.triangle_count = uint32_t(scene.triangles.size());
   inputs.scene_name = options.scene.filename().string();

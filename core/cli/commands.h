@@ -1,5 +1,6 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <exception>
 
 // A command of the program is one file core/cli/NAME_command.cpp that defines
 //
@@ -11,8 +12,10 @@
 namespace sightline {
 
 /// Ends the program with this code and without a message: everything has been said.
-struct ExitCode {
-  int code = 0;
+struct ExitCode : std::exception {
+  explicit ExitCode(int exit_code) : code(exit_code) {}
+  const char* what() const noexcept override { return "exit"; }
+  int code;
 };
 
 #define SL_COMMAND(function) void function(CLI::App& app);

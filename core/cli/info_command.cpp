@@ -97,10 +97,12 @@ void showParams(const BakeParams& params) {
 void showPvs(const std::filesystem::path& file) {
   const PvsFile pvs = loadFinishedCells(file);
   const auto cells = summarize(pvs);
-  row("visible sets", fmt::format("{}, format version {}", file.string(), kPvsVersion));
+  row("visible sets", fmt::format("{}, format version {}", file.string(), pvs.version));
   row("scene",
       fmt::format("{}, {} triangles, hash {}", pvs.scene_name, pvs.triangle_count, hashText(pvs.scene_hash)));
   row("device", pvs.device);
+  row("algorithm", fmt::format("revision {}{}", pvs.algorithm,
+                               pvs.intersector.empty() ? "" : ", intersection test of " + pvs.intersector));
   showParams(pvs.params);
   row("witnesses", pvs.has_witnesses ? "yes" : "no");
   row("result hash", hashText(hashResult(cells)));

@@ -342,6 +342,7 @@ DeviceInfo cpuDeviceInfo() {
   info.driver = "built in";
   info.layout = "8-wide, single rays";
   info.on_cpu = true;
+  info.exact = true;
   return info;
 }
 

@@ -52,6 +52,12 @@ void requireDevice(const std::string& name) {
   }
 }
 
+std::string intersectorOf(const std::string& name) {
+  if (!isOfKind(name, "vulkan")) return {};
+  const DeviceInfo info = selectVulkanDevice(name).info;
+  return info.name + ", " + info.driver;
+}
+
 std::unique_ptr<Device> makeDevice(const std::string& name, const Scene& scene, const Bvh& bvh,
                                    const DeviceOptions& options) {
   if (name == "cpu") return makeCpuDevice(scene, bvh, options);

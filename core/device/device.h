@@ -23,6 +23,7 @@ struct DeviceInfo {
   std::string unusable;  ///< why it cannot run; empty: it can
   uint64_t memory_bytes = 0;
   bool on_cpu = false;  ///< a processor does the work (cpu, PoCL, lavapipe): fewer rays are to be had
+  bool exact = false;   ///< traces by core/shared/triangle.h, as cpu and opencl do: same sets, bit for bit
   // The driver's own trees (vulkan), once a scene is on the device; else 0.
   uint32_t driver_tree_parts = 0;        ///< bottom-level acceleration structures
   uint64_t driver_tree_bytes = 0;        ///< of all acceleration structures
@@ -136,6 +137,11 @@ std::vector<DeviceInfo> listDevices();
 /// Throws Error as makeDevice would if `name` selects no device that can run here: at once, before the work
 /// that a tree takes.
 void requireDevice(const std::string& name);
+
+/// Whose intersection test decides what rays hit on the device that `name` selects: empty for that of
+/// core/shared, whose sets are the same on every device; else (vulkan) the device's name and its driver's
+/// version. Throws Error as requireDevice, where it must look at the device.
+std::string intersectorOf(const std::string& name);
 
 /// Whether makeDevice could know the name: "cpu"; "opencl" or "vulkan", alone or with ":" and more.
 bool isDeviceName(const std::string& name);

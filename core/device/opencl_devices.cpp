@@ -42,6 +42,7 @@ OpenClDevice describeDevice(cl_device_id id, size_t index) {
   OpenClDevice device;
   device.id = id;
   device.info.id = fmt::format("opencl:{}", index);
+  device.info.exact = true;
   try {
     device.type = clDeviceValue<cl_device_type>(id, CL_DEVICE_TYPE);
     device.info.name = clDeviceText(id, CL_DEVICE_NAME);

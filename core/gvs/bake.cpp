@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "core/error.h"
+#include "core/scene/check_cells.h"
 #include "core/scene/file_io.h"
 
 namespace sightline {
@@ -25,30 +26,41 @@ void compareCells(std::vector<std::string>& differences, const std::vector<ViewC
   }
 }
 
-/// Throws Error if a bake with other inputs is in the way.
-void requireSameInputs(const PvsFile& earlier, const PvsFile& wanted, const std::filesystem::path& file) {
+/// What there is to do about a bake that is in the way.
+constexpr const char* kRemedy = "choose another -o, or --overwrite it";
+
+/// In one line how the bake in `file` differs from the one wanted; empty: in nothing.
+std::string whyOther(const PvsFile& earlier, const PvsFile& wanted, const std::filesystem::path& file) {
   const auto differences = inputDifferences(earlier, wanted);
-  if (differences.empty()) return;
+  if (differences.empty()) return {};
   std::string list = differences.front();
   for (size_t i = 1; i < differences.size(); ++i) list += ", " + differences[i];
-  throw Error(fmt::format("{}: holds a bake with other inputs: {}; choose another -o, or --overwrite it",
-                          file.string(), list));
+  return fmt::format("{}: holds a bake with other inputs: {}; {}", file.string(), list, kRemedy);
 }
 
-/// What `load` reads of an earlier bake's file. Throws Error that says how to do without.
+/// What `load` reads of an earlier bake's file. Throws BadPvs that says how to do without, or Error if the
+/// file cannot be read.
 template <typename Load>
 auto loadEarlier(Load load, const std::filesystem::path& file) {
   try {
     return load(file);
-  } catch (const Error& error) {
-    throw Error(fmt::format("{} (choose another -o, or --overwrite it)", error.what()));
+  } catch (const BadPvs& problem) {
+    throw BadPvs(fmt::format("{} ({})", problem.what(), kRemedy));
   }
+}
+
+std::string intersectorText(const std::string& intersector) {
+  return intersector.empty() ? "that of cpu and opencl" : "that of " + intersector;
 }
 
 }  // namespace
 
 std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile& wanted) {
   std::vector<std::string> differences;
+  compare(differences, "version of the format", earlier.version, wanted.version);
+  compare(differences, "revision of the algorithm", earlier.algorithm, wanted.algorithm);
+  compare(differences, "intersection test", intersectorText(earlier.intersector),
+          intersectorText(wanted.intersector));
   if (earlier.scene_hash != wanted.scene_hash || earlier.triangle_count != wanted.triangle_count) {
     differences.push_back(fmt::format("scene ({} with {} triangles there, {} with {} now)",
                                       earlier.scene_name, earlier.triangle_count, wanted.scene_name,
@@ -90,24 +102,22 @@ std::filesystem::path partFileOf(std::filesystem::path file) {
 Bake::Bake(PvsFile wanted, std::filesystem::path file, bool overwrite)
     : head_(std::move(wanted)), file_(std::move(file)), part_(partFileOf(file_)) {
   head_.cells.clear();
+  if (const auto problem = cellProblem(head_.planned)) throw Error(problem->text(), kExitUsage);
   if (file_.empty()) throw Error("the output has no name; name a file to write", kExitUsage);
   if (std::filesystem::is_directory(file_)) {
     throw Error(fmt::format("{}: is a folder; name a file to write", file_.string()));
   }
   requireReplaceable(file_);
+  requireReplaceable(part_);
   if (!overwrite && openComplete()) return;
   writer_ = std::make_unique<PvsWriter>(part_);
-  try {
-    goOnAfterPart();
-  } catch (const Error&) {
-    if (!overwrite) throw;
-  }
+  goOnAfterPart(overwrite);
 }
 
 bool Bake::openComplete() {
   if (!std::filesystem::exists(file_)) return false;
   const PvsFile earlier = loadEarlier(loadPvs, file_);
-  requireSameInputs(earlier, head_, file_);
+  if (const std::string why = whyOther(earlier, head_, file_); !why.empty()) throw Error(why);
   if (earlier.cells.size() != earlier.planned.size()) return false;
   finished_ = summarize(earlier);
   resumed_ = finished_.size();
@@ -116,11 +126,19 @@ bool Bake::openComplete() {
   return true;
 }
 
-void Bake::goOnAfterPart() {
-  const PartialPvs left = loadEarlier(loadPartialPvs, part_);
+void Bake::goOnAfterPart(bool overwrite) {
+  PartialPvs left;
+  try {
+    left = loadEarlier(loadPartialPvs, part_);
+  } catch (const BadPvs&) {
+    if (!overwrite) throw;  // else it goes; what cannot even be read stays
+    return;
+  }
+  const std::string why = left.whole_bytes == 0 ? "" : whyOther(left.pvs, head_, part_);
+  if (!why.empty() && !overwrite) throw Error(why);
+  if (!why.empty()) return;
   part_problem_ = left.problem;
   if (left.whole_bytes == 0) return;
-  requireSameInputs(left.pvs, head_, part_);
   writer_->goOn(left);
   begun_ = true;
   finished_ = summarize(left.pvs);
@@ -131,8 +149,8 @@ void Bake::goOnAfterPart() {
 bool Bake::run(const std::string& device, const CellBaker& baker, const BakeEvents& events,
                const std::atomic<bool>* stop) {
   if (complete_) return true;
+  if (finished_.empty()) head_.device = device;
   if (!begun_) {
-    head_.device = device;
     writer_->begin(head_);
     begun_ = true;
   }
@@ -140,9 +158,10 @@ bool Bake::run(const std::string& device, const CellBaker& baker, const BakeEven
     const auto index = uint32_t(finished_.size());
     if (stop && *stop) return false;
     try {
-      const CellPvs pvs = baker(head_.planned[index], index, [&](const BakeProgress& progress) {
+      CellPvs pvs = baker(head_.planned[index], index, [&](const BakeProgress& progress) {
         if (events.progress) events.progress(index, progress);
       });
+      pvs.device = device;
       writer_->append(pvs);
       finished_.push_back(summarize(pvs));
       if (events.cell_done) events.cell_done(index, pvs);

@@ -24,8 +24,8 @@ struct BakeEvents {
 };
 
 /// How two bakes' inputs differ, for people: "scene (city.obj, 12 triangles, not room.obj, 10 triangles)",
-/// "n_rand (1000, not 500)", ... Empty: a bake of one goes on with the other. The device does not count:
-/// devices give the same sets.
+/// "n_rand (1000, not 500)", ... Empty: a bake of one goes on with the other. The algorithm's revision and
+/// the intersector count; the device does not: devices with one intersector give the same sets.
 std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile& wanted);
 
 /// Where a bake into `file` keeps its finished cells until all are there: FILE.part.
@@ -37,8 +37,8 @@ class Bake {
  public:
   /// Looks at what is there: FILE complete, FILE.part to go on from, or nothing; locks the part file.
   /// wanted.cells is ignored. Throws Error if FILE or FILE.part holds a bake with other inputs or is damaged,
-  /// unless `overwrite` (which replaces them, but goes on after a part file with the same inputs), or if
-  /// nothing can be written there.
+  /// unless `overwrite` (which replaces them, but goes on after a part file with the same inputs), or if it
+  /// cannot be read, or if nothing can be written there.
   Bake(PvsFile wanted, std::filesystem::path file, bool overwrite = false);
 
   /// FILE already holds everything.
@@ -54,13 +54,13 @@ class Bake {
   const std::filesystem::path& partFile() const { return part_; }
 
   /// Bakes what is missing and completes the file. False if *stop became true: what is finished is kept.
-  /// device: for the file's head, where the bake begins now.
+  /// device: on which the baker bakes, for the file.
   bool run(const std::string& device, const CellBaker& baker, const BakeEvents& events = {},
            const std::atomic<bool>* stop = nullptr);
 
  private:
   bool openComplete();
-  void goOnAfterPart();
+  void goOnAfterPart(bool overwrite);
 
   PvsFile head_;
   std::filesystem::path file_, part_;

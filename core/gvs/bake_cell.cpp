@@ -1,5 +1,7 @@
 #include "core/gvs/bake_cell.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,6 +16,8 @@
 #include "core/gvs/iteration_forecast.h"
 #include "core/gvs/make_stage_params.h"
 #include "core/gvs/random_segment.h"
+#include "core/gvs/rays_in_time.h"
+#include "core/scene/check_cells.h"
 #include "core/scene/contained.h"
 #include "core/shared/border.h"
 #include "core/shared/reverse.h"
@@ -239,18 +243,7 @@ class CellBake {
   uint32_t batchRays() const {
     const uint64_t most = std::clamp<uint64_t>(rays_, kFewestBatchRays, params_.batch_rays);
     if (params_.max_seconds == 0 || !device_.info().on_cpu) return static_cast<uint32_t>(most);
-    const double in_time = slowestRate() * std::max(0.0, params_.max_seconds - seconds());
-    return static_cast<uint32_t>(std::clamp(in_time, double(kFewestBatchRays), double(most)));
-  }
-
-  /// Rays a second of border or reverse rays, whichever are slower; before the first, a tenth of the random
-  /// rays', as in a thicket.
-  double slowestRate() const {
-    const auto rate = [](const StageStats& stage) { return double(stage.rays) / stage.seconds; };
-    double slowest = rate(stats_.random) / 10;
-    if (stats_.border.rays > 0) slowest = rate(stats_.border);
-    if (stats_.reverse.rays > 0) slowest = std::min(slowest, rate(stats_.reverse));
-    return slowest;
+    return raysInTime(stats_, params_.max_seconds - seconds(), most);
   }
 
   /// Discontinuities whose reverse rays are still to be traced.
@@ -430,6 +423,9 @@ class CellBake {
 CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
                  const BakeParams& params, const BakeHooks& hooks) {
   checkParams(params);
+  if (const auto problem = cellProblem(cell)) {
+    throw Error(fmt::format("cell {}, {}: {}", cell_index, cell.name, problem->text()), kExitUsage);
+  }
   if (hooks.trace != nullptr) *hooks.trace = {};
   CellPvs pvs;
   pvs.cell = cell;

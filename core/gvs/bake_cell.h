@@ -1,5 +1,6 @@
 #pragma once
 #include <atomic>
+#include <exception>
 #include <functional>
 
 #include "core/device/device.h"
@@ -39,7 +40,9 @@ struct BakeHooks {
 };
 
 /// Thrown by bakeCell when *stop became true: nothing of the cell is kept.
-struct Interrupted {};
+struct Interrupted : std::exception {
+  const char* what() const noexcept override { return "interrupted"; }
+};
 
 /// Throws Error (wrong usage) that names the parameter that is out of range.
 void checkParams(const BakeParams& params);

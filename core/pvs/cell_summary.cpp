@@ -17,7 +17,8 @@ double CellSummary::missingShare() const {
 
 CellSummary summarize(const CellPvs& pvs) {
   const auto& ids = pvs.triangles;
-  return {pvs.cell, pvs.stats, uint32_t(ids.size()), XXH3_64bits(ids.data(), ids.size() * sizeof(uint32_t))};
+  return {pvs.cell, pvs.stats, uint32_t(ids.size()), XXH3_64bits(ids.data(), ids.size() * sizeof(uint32_t)),
+          pvs.device};
 }
 
 std::vector<CellSummary> summarize(const PvsFile& pvs) {

@@ -14,6 +14,7 @@ struct CellSummary {
   CellStats stats;
   uint32_t pvs_size = 0;  ///< triangles in the set
   uint64_t set_hash = 0;  ///< XXH3 of the ids
+  std::string device;     ///< that baked it
 
   /// Traced by the three stages, validation left out.
   uint64_t rays() const { return stats.random.rays + stats.border.rays + stats.reverse.rays; }

@@ -3,7 +3,9 @@
 // computation of binomial probabilities", 2000: saddle point and deviance instead of differences of
 // logarithms of factorials, which at 1e10 rays would lose six digits.
 #include <cmath>
+#include <numbers>
 
+#include "core/pvs/portable_math.h"
 #include "core/pvs/pvs.h"
 
 namespace sightline {
@@ -12,9 +14,15 @@ namespace {
 /// Share of the probability left out on each side of a two-sided interval of 95 %.
 constexpr double kTail = 0.025;
 
-/// log(n!) minus Stirling's approximation of it.
+constexpr double kTwoPi = 2 * std::numbers::pi;
+
+/// log(n!) minus Stirling's approximation of it, n a whole number above 0.
 double stirlingError(double n) {
-  if (n < 16) return std::lgamma(n + 1) - (n + 0.5) * std::log(n) + n - 0.5 * std::log(2 * M_PI);
+  if (n < 16) {
+    double factorial = 1;  // 15! has 13 digits: exact
+    for (double i = 2; i <= n; ++i) factorial *= i;
+    return portableLog(factorial) - (n + 0.5) * portableLog(n) + n - 0.5 * portableLog(kTwoPi);
+  }
   const double n2 = n * n;
   return (1.0 / 12 - (1.0 / 360 - (1.0 / 1260 - (1.0 / 1680) / n2) / n2) / n2) / n;
 }
@@ -22,7 +30,7 @@ double stirlingError(double n) {
 /// x log(x / mean) + mean - x, without cancellation where the two are near.
 double deviance(double x, double mean) {
   const double difference = x - mean;
-  if (std::fabs(difference) > 0.1 * (x + mean)) return x * std::log(x / mean) - difference;
+  if (std::fabs(difference) > 0.1 * (x + mean)) return x * portableLog(x / mean) - difference;
   const double v = difference / (x + mean);
   double sum = difference * v, power = 2 * x * v;
   for (int i = 1; i < 1000; ++i) {
@@ -38,7 +46,7 @@ double deviance(double x, double mean) {
 double binomialProbability(double k, double n, double p) {
   const double exponent = stirlingError(n) - stirlingError(k) - stirlingError(n - k) - deviance(k, n * p) -
                           deviance(n - k, n * (1 - p));
-  return std::exp(exponent) * std::sqrt(n / (2 * M_PI * k * (n - k)));
+  return portableExp(exponent) * std::sqrt(n / (kTwoPi * k * (n - k)));
 }
 
 /// Probability of k or fewer of n, k <= n p: terms shrink from k downwards.
@@ -60,7 +68,7 @@ double missingUpperBound(uint64_t missing, uint64_t rays) {
 double missingUpperBound(uint64_t missing, uint64_t rays, double tail) {
   if (missing >= rays) return 1;
   const double n = double(rays), k = double(missing);
-  if (missing == 0) return -std::expm1(std::log(tail) / n);  // 1 - tail^(1/n)
+  if (missing == 0) return -portableExpm1(portableLog(tail) / n);  // 1 - tail^(1/n)
   double low = k / n, high = 1;
   while (true) {
     // Small shares need their digits too: halve the ratio while it is large.

@@ -4,8 +4,8 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <map>
 
-#include "core/error.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/scene/file_io.h"
@@ -26,47 +26,55 @@ Bytes readBytes(const std::filesystem::path& file) {
 }
 
 [[noreturn]] void failAt(const std::filesystem::path& file, uint64_t offset, const std::string& problem) {
-  throw Error(
+  throw BadPvs(
       fmt::format("{}: byte {}: {}; the file is damaged, bake again", file.string(), offset, problem));
 }
 
-void checkPrelude(const Bytes& bytes, const std::filesystem::path& file) {
-  const Bytes expected = writePrelude();
-  if (bytes.size() < expected.size()) failAt(file, bytes.size(), "cut off in the first 16 bytes");
-  if (!std::equal(std::begin(kPvsMagic), std::end(kPvsMagic), bytes.begin())) {
-    throw Error(fmt::format("{}: not a .pvs file (its first 8 bytes differ)", file.string()));
-  }
-  ByteReader in{std::span(bytes).subspan(sizeof(kPvsMagic))};
-  const auto version = in.number<uint32_t>();
-  if (version != kPvsVersion) {
-    throw Error(fmt::format("{}: has version {} of the format, this program reads version {}; bake again",
-                            file.string(), version, kPvsVersion));
-  }
-  if (in.number<uint32_t>() != 0) failAt(file, 12, "four zero bytes expected");
+/// Whether the bytes begin as those of every .pvs file do, as far as they go.
+bool beginsAsPvs(const Bytes& bytes) {
+  const size_t there = std::min(bytes.size(), sizeof(kPvsMagic));
+  return std::equal(bytes.begin(), bytes.begin() + ptrdiff_t(there), std::begin(kPvsMagic));
 }
 
-/// Throws std::string if there is no sound section at `offset`.
+/// Returns the version of the format.
+uint32_t readPrelude(const Bytes& bytes, const std::filesystem::path& file) {
+  if (bytes.empty()) throw BadPvs(fmt::format("{}: is empty, not a .pvs file", file.string()));
+  if (!beginsAsPvs(bytes)) {
+    throw BadPvs(fmt::format("{}: not a .pvs file (its first bytes are not those of one)", file.string()));
+  }
+  if (bytes.size() < kPvsPreludeBytes) failAt(file, bytes.size(), "cut off in the first 16 bytes");
+  ByteReader in{std::span(bytes).subspan(sizeof(kPvsMagic))};
+  const auto version = in.number<uint32_t>();
+  if (version < kOldestPvsVersion || version > kPvsVersion) {
+    throw BadPvs(fmt::format("{}: has version {} of the format, this program reads {} to {}; bake again",
+                             file.string(), version, kOldestPvsVersion, kPvsVersion));
+  }
+  if (in.number<uint32_t>() != 0) failAt(file, 12, "four zero bytes expected");
+  return version;
+}
+
+/// Throws Damage if there is no sound section at `offset`.
 Section readSection(const Bytes& bytes, uint64_t offset) {
   ByteReader in{std::span(bytes).subspan(size_t(offset))};
   Section section{in.number<uint32_t>(), {}, offset, 0};
   const auto reserved = in.number<uint32_t>();
   const auto size = in.number<uint64_t>();
-  if (in.failed()) throw std::string("cut off in the head of a section");
+  if (in.failed()) throw Damage("cut off in the head of a section");
   section.payload = in.raw(size);
   const auto checksum = in.number<uint64_t>();
-  if (in.failed()) throw std::string("cut off in a section");
+  if (in.failed()) throw Damage("cut off in a section");
   section.end = offset + kSectionHeadBytes + size + kSectionChecksumBytes;
   if (checksum != XXH3_64bits(bytes.data() + offset, kSectionHeadBytes + size) || reserved != 0) {
-    throw std::string("checksum of a section differs");
+    throw Damage("checksum of a section differs");
   }
   return section;
 }
 
 /// Reads the head into `pvs` and returns its end.
-uint64_t readHead(const Bytes& bytes, PvsFile& pvs) {
+uint64_t readHead(const Bytes& bytes, uint32_t version, PvsFile& pvs) {
   const Section section = readSection(bytes, kPvsPreludeBytes);
-  if (section.kind != kSectionHead) throw std::string("the first section must be HEAD");
-  pvs = readHeadPayload(section.payload);
+  if (section.kind != kSectionHead) throw Damage("the first section must be HEAD");
+  pvs = readHeadPayload(section.payload, version);
   return section.end;
 }
 
@@ -74,30 +82,92 @@ bool isComplete(const Section& section) {
   return section.kind == kSectionEnd;
 }
 
-/// Appends the section's cell to pvs.cells.
-void readCell(const Section& section, PvsFile& pvs) {
-  if (section.kind != kSectionCell) throw std::string("section of unknown kind");
-  pvs.cells.push_back(readCellPayload(section.payload, pvs, uint32_t(pvs.cells.size())));
-}
+/// Cells and what they took, in whatever order their sections come.
+class CellSections {
+ public:
+  explicit CellSections(const PvsFile& head) : head_(head) {}
+
+  /// Takes a CELL or COST section. Throws Damage.
+  void add(const Section& section) {
+    if (section.kind == kSectionCell) {
+      addCell(section);
+    } else if (section.kind == kSectionCost) {
+      for (CellCost& cost : readCostPayload(section.payload, head_)) addCost(std::move(cost));
+    } else {
+      throw Damage("section of unknown kind");
+    }
+  }
+
+  /// Whether the cells are the first of those planned, and it is known what each took.
+  bool whole() const { return areFirst(cells_) && areFirst(costs_) && cells_.size() == costs_.size(); }
+  size_t size() const { return cells_.size(); }
+
+  /// Moves the first cells, which must be whole, to pvs.cells and their places to `places`.
+  void take(size_t count, PvsFile& pvs, std::vector<ByteRange>& places) {
+    for (uint32_t index = 0; index < count; ++index) {
+      PlacedCell& cell = cells_.at(index);
+      setCost(cell.pvs, costs_.at(index));
+      pvs.cells.push_back(std::move(cell.pvs));
+      places.push_back(cell.place);
+    }
+    if (count != 0) pvs.device = pvs.cells.front().device;
+  }
+
+ private:
+  struct PlacedCell {
+    CellPvs pvs;
+    ByteRange place;
+  };
+
+  template <typename T>
+  static bool areFirst(const std::map<uint32_t, T>& by_index) {
+    return by_index.empty() || by_index.rbegin()->first + 1 == by_index.size();
+  }
+
+  void addCell(const Section& section) {
+    IndexedCell cell = readCellPayload(section.payload, head_);
+    if (head_.version < kPvsVersionWithCosts) {  // has the cost among the counts, and one device for all
+      cell.pvs.device = head_.device;
+      addCost(costOf(cell.pvs, cell.index));
+    }
+    const ByteRange place{section.offset, section.end - section.offset};
+    if (!cells_.emplace(cell.index, PlacedCell{std::move(cell.pvs), place}).second) {
+      throw Damage("a cell comes twice");
+    }
+  }
+
+  void addCost(CellCost cost) {
+    const uint32_t index = cost.index;
+    if (!costs_.emplace(index, std::move(cost)).second) throw Damage("the times of a cell come twice");
+  }
+
+  const PvsFile& head_;
+  std::map<uint32_t, PlacedCell> cells_;
+  std::map<uint32_t, CellCost> costs_;
+};
 
 }  // namespace
 
 PvsFile parsePvs(const Bytes& bytes, const std::filesystem::path& file) {
-  checkPrelude(bytes, file);
+  const uint32_t version = readPrelude(bytes, file);
   PvsFile pvs;
   uint64_t offset = kPvsPreludeBytes;
   try {
-    offset = readHead(bytes, pvs);
+    offset = readHead(bytes, version, pvs);
+    CellSections cells(pvs);
     Section section = readSection(bytes, offset);
     for (; !isComplete(section); section = readSection(bytes, offset)) {
-      readCell(section, pvs);
+      cells.add(section);
       offset = section.end;
     }
-    checkEndPayload(section.payload, uint32_t(pvs.cells.size()), XXH3_64bits(bytes.data(), offset));
+    checkEndPayload(section.payload, uint32_t(cells.size()), XXH3_64bits(bytes.data(), offset));
+    if (!cells.whole()) throw Damage("a cell or its times are missing before it");
     offset = section.end;
-    if (offset != bytes.size()) throw std::string("bytes after the end");
-  } catch (const std::string& problem) {
-    failAt(file, offset, problem);
+    if (offset != bytes.size()) throw Damage("bytes after the end");
+    std::vector<ByteRange> places;
+    cells.take(cells.size(), pvs, places);
+  } catch (const Damage& damage) {
+    failAt(file, offset, damage.what());
   }
   return pvs;
 }
@@ -109,41 +179,36 @@ PvsFile loadPvs(const std::filesystem::path& file) {
 PartialPvs loadPartialPvs(const std::filesystem::path& part) {
   const Bytes bytes = readBytes(part);
   PartialPvs left;
-  if (bytes.size() >= kPvsPreludeBytes) checkPrelude(bytes, part);
-  try {
-    left.whole_bytes = bytes.size() < kPvsPreludeBytes ? 0 : readHead(bytes, left.pvs);
-    while (left.whole_bytes != 0 && left.whole_bytes < bytes.size()) {
-      const Section section = readSection(bytes, left.whole_bytes);
-      if (isComplete(section)) break;  // killed between the end and the rename: finish again
-      readCell(section, left.pvs);
-      left.whole_bytes = section.end;
-    }
-    if (left.whole_bytes == 0 && !bytes.empty()) left.problem = "cut off in its head";
-  } catch (const std::string& problem) {
-    left.problem = problem;
+  if (bytes.size() < kPvsPreludeBytes && beginsAsPvs(bytes)) {  // killed before all of it was there
+    left.torn_bytes = bytes.size();
+    if (!bytes.empty()) left.problem = "cut off in its head";
+    return left;
   }
+  const uint32_t version = readPrelude(bytes, part);
+  CellSections cells(left.pvs);
+  size_t whole_cells = 0;
+  try {
+    uint64_t offset = left.whole_bytes = readHead(bytes, version, left.pvs);
+    left.places.push_back({0, offset});
+    while (offset < bytes.size()) {
+      const Section section = readSection(bytes, offset);
+      if (isComplete(section)) break;  // killed between the end and the rename: finish again
+      cells.add(section);
+      offset = section.end;
+      if (!cells.whole()) continue;
+      left.whole_bytes = offset;
+      whole_cells = cells.size();
+    }
+  } catch (const Damage& damage) {
+    left.problem = damage.what();
+  }
+  cells.take(whole_cells, left.pvs, left.places);
   left.torn_bytes = bytes.size() - left.whole_bytes;
   return left;
 }
 
 PvsFile loadFinishedCells(const std::filesystem::path& file) {
   return file.extension() == ".part" ? loadPartialPvs(file).pvs : loadPvs(file);
-}
-
-void savePvs(const PvsFile& pvs, const std::filesystem::path& file) {
-  requireReplaceable(file);
-  auto temporary = file;
-  temporary += ".tmp";
-  try {
-    PvsWriter writer(temporary);
-    writer.begin(pvs);
-    for (const CellPvs& cell : pvs.cells) writer.append(cell);
-    writer.finish(file);
-  } catch (...) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw;
-  }
 }
 
 }  // namespace sightline

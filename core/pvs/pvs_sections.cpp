@@ -4,8 +4,10 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/pvs/set_codec.h"
+#include "core/scene/check_cells.h"
 
 namespace sightline {
 namespace {
@@ -15,9 +17,11 @@ constexpr size_t kPlannedCellBytes = 4 + 9 * 8;
 /// Bytes of a witness before compression: origin, direction, stage.
 constexpr uint64_t kWitnessBytes = 25;
 constexpr uint32_t kFlagWitnesses = 1;
+/// Of programs that wrote no revision.
+constexpr uint32_t kFirstAlgorithm = 1;
 
 void require(bool condition, const char* problem) {
-  if (!condition) throw std::string(problem);
+  if (!condition) throw Damage(problem);
 }
 
 void writeParams(ByteWriter& out, const BakeParams& params) {
@@ -72,39 +76,42 @@ void writeStats(ByteWriter& out, const CellStats& stats) {
   for (const StageStats* stage : {&stats.random, &stats.border, &stats.reverse}) {
     out.number(stage->rays);
     out.number(stage->new_triangles);
-    out.number(stage->seconds);
   }
   out.number(stats.contained_triangles);
   out.number(stats.iterations);
   out.number(uint32_t(stats.stop));
-  for (uint64_t value : {stats.validation_rays, stats.missing_rays, stats.peak_device_bytes}) {
-    out.number(value);
-  }
-  out.number(stats.bound_rays);
+  for (uint64_t value : {stats.validation_rays, stats.missing_rays, stats.bound_rays}) out.number(value);
   out.number(stats.bound_tests);
   out.number(stats.error_bound);
-  out.number(stats.seconds);
 }
 
-CellStats readStats(ByteReader& in) {
+double readSeconds(ByteReader& in) {
+  const auto seconds = in.number<double>();
+  require(std::isfinite(seconds) && seconds >= 0, "a time that is none");
+  return seconds;
+}
+
+/// with_cost: as versions before 4 have it, times and memory among the counts.
+CellStats readStats(ByteReader& in, bool with_cost) {
   CellStats stats;
   for (StageStats* stage : {&stats.random, &stats.border, &stats.reverse}) {
     stage->rays = in.number<uint64_t>();
     stage->new_triangles = in.number<uint64_t>();
-    stage->seconds = in.number<double>();
+    if (with_cost) stage->seconds = readSeconds(in);
   }
   stats.contained_triangles = in.number<uint64_t>();
   stats.iterations = in.number<uint32_t>();
   const auto stop = in.number<uint32_t>();
   require(stop <= uint32_t(StopReason::kTargetError), "unknown stop reason");
   stats.stop = StopReason(stop);
-  for (uint64_t* value : {&stats.validation_rays, &stats.missing_rays, &stats.peak_device_bytes}) {
-    *value = in.number<uint64_t>();
-  }
+  stats.validation_rays = in.number<uint64_t>();
+  stats.missing_rays = in.number<uint64_t>();
+  if (with_cost) stats.peak_device_bytes = in.number<uint64_t>();
   stats.bound_rays = in.number<uint64_t>();
   stats.bound_tests = in.number<uint32_t>();
   stats.error_bound = in.number<double>();
-  stats.seconds = in.number<double>();
+  require(stats.error_bound >= 0 && stats.error_bound <= 1, "a bound of the error outside 0 .. 1");
+  if (with_cost) stats.seconds = readSeconds(in);
   return stats;
 }
 
@@ -171,9 +178,10 @@ Bytes writeHeadPayload(const PvsFile& pvs) {
   out.number(pvs.scene_hash);
   out.number(pvs.triangle_count);
   out.number(pvs.has_witnesses ? kFlagWitnesses : 0u);
+  out.number(pvs.algorithm);
   writeParams(out, pvs.params);
   out.text(pvs.scene_name);
-  out.text(pvs.device);
+  out.text(pvs.intersector);
   out.number(uint32_t(pvs.planned.size()));
   for (const ViewCell& cell : pvs.planned) {
     out.text(cell.name);
@@ -184,26 +192,38 @@ Bytes writeHeadPayload(const PvsFile& pvs) {
   return out.bytes();
 }
 
-PvsFile readHeadPayload(std::span<const uint8_t> payload) {
+PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version) {
   ByteReader in(payload);
   PvsFile pvs;
+  pvs.version = version;
   pvs.scene_hash = in.number<uint64_t>();
   pvs.triangle_count = in.number<uint32_t>();
   const auto flags = in.number<uint32_t>();
   require(flags <= kFlagWitnesses, "unknown flags");
   pvs.has_witnesses = (flags & kFlagWitnesses) != 0;
+  pvs.algorithm = version < kPvsVersionWithCosts ? kFirstAlgorithm : in.number<uint32_t>();
   pvs.params = readParams(in);
   pvs.scene_name = in.text();
-  pvs.device = in.text();
+  if (version < kPvsVersionWithCosts) {
+    pvs.device = in.text();
+    if (pvs.device.starts_with("vulkan")) pvs.intersector = pvs.device;
+  } else {
+    pvs.intersector = in.text();
+  }
   const auto planned = in.number<uint32_t>();
   require(planned <= in.left() / kPlannedCellBytes, "more cells announced than there are");
   pvs.planned.reserve(planned);
   for (uint32_t i = 0; i < planned; ++i) pvs.planned.push_back(readPlannedCell(in));
   require(in.finished(), "head of the wrong size");
+  if (const auto problem = cellProblem(pvs.planned)) throw Damage(problem->text());
   return pvs;
 }
 
-Bytes writeCellPayload(const CellPvs& cell, uint32_t index) {
+Bytes writeCellPayload(const CellPvs& cell, uint32_t index, bool has_witnesses) {
+  if (cell.witnesses.size() != (has_witnesses ? cell.triangles.size() : 0)) {
+    throw Error(fmt::format("cell {} has {} witnesses for {} triangles: an error of this program",
+                            cell.cell.name, cell.witnesses.size(), cell.triangles.size()));
+  }
   ByteWriter out;
   out.number(index);
   out.number(uint32_t(cell.triangles.size()));
@@ -215,13 +235,15 @@ Bytes writeCellPayload(const CellPvs& cell, uint32_t index) {
   return out.bytes();
 }
 
-CellPvs readCellPayload(std::span<const uint8_t> payload, const PvsFile& head, uint32_t index) {
+IndexedCell readCellPayload(std::span<const uint8_t> payload, const PvsFile& head) {
   ByteReader in(payload);
-  require(in.number<uint32_t>() == index && index < head.planned.size(), "cell out of order");
-  CellPvs cell;
-  cell.cell = head.planned[index];
+  IndexedCell result;
+  result.index = in.number<uint32_t>();
+  require(result.index < head.planned.size(), "a cell that was not planned");
+  CellPvs& cell = result.pvs;
+  cell.cell = head.planned[result.index];
   const auto count = in.number<uint32_t>();
-  cell.stats = readStats(in);
+  cell.stats = readStats(in, head.version < kPvsVersionWithCosts);
   const auto set = in.raw(in.number<uint64_t>());
   require(!in.failed(), "cell of the wrong size");
   auto triangles = decodeSet(set, count, head.triangle_count);
@@ -232,7 +254,49 @@ CellPvs readCellPayload(std::span<const uint8_t> payload, const PvsFile& head, u
   require(cell.witnesses.size() == (head.has_witnesses ? count : 0) &&
               (witnesses.empty() || !cell.witnesses.empty()),
           "witnesses where none belong");
-  return cell;
+  return result;
+}
+
+CellCost costOf(const CellPvs& cell, uint32_t index) {
+  const CellStats& stats = cell.stats;
+  return {index,         stats.random.seconds,    stats.border.seconds, stats.reverse.seconds,
+          stats.seconds, stats.peak_device_bytes, cell.device};
+}
+
+void setCost(CellPvs& cell, const CellCost& cost) {
+  cell.stats.random.seconds = cost.random_seconds;
+  cell.stats.border.seconds = cost.border_seconds;
+  cell.stats.reverse.seconds = cost.reverse_seconds;
+  cell.stats.seconds = cost.seconds;
+  cell.stats.peak_device_bytes = cost.peak_device_bytes;
+  cell.device = cost.device;
+}
+
+void writeCost(ByteWriter& out, const CellCost& cost) {
+  out.number(cost.index);
+  for (double value : {cost.random_seconds, cost.border_seconds, cost.reverse_seconds, cost.seconds}) {
+    out.number(value);
+  }
+  out.number(cost.peak_device_bytes);
+  out.text(cost.device);
+}
+
+std::vector<CellCost> readCostPayload(std::span<const uint8_t> payload, const PvsFile& head) {
+  require(head.version >= kPvsVersionWithCosts, "section of unknown kind");
+  ByteReader in(payload);
+  std::vector<CellCost> costs;
+  while (in.left() != 0) {
+    CellCost cost;
+    cost.index = in.number<uint32_t>();
+    for (double* value : {&cost.random_seconds, &cost.border_seconds, &cost.reverse_seconds, &cost.seconds}) {
+      *value = readSeconds(in);
+    }
+    cost.peak_device_bytes = in.number<uint64_t>();
+    cost.device = in.text();
+    require(!in.failed(), "times of cells cut off");
+    costs.push_back(std::move(cost));
+  }
+  return costs;
 }
 
 Bytes writeEndPayload(uint32_t cells, uint64_t checksum) {

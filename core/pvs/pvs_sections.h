@@ -1,6 +1,7 @@
 #pragma once
 #include <filesystem>
 #include <span>
+#include <stdexcept>
 #include <string>
 
 #include "core/pvs/byte_stream.h"
@@ -10,7 +11,10 @@
 namespace sightline {
 
 inline constexpr uint8_t kPvsMagic[8] = {0x89, 'S', 'L', 'P', 'V', 'S', '\r', '\n'};
-inline constexpr uint32_t kPvsVersion = 3;
+/// The oldest version of the format that is still read.
+inline constexpr uint32_t kOldestPvsVersion = 3;
+/// The first version with an algorithm's revision, an intersector and COST sections.
+inline constexpr uint32_t kPvsVersionWithCosts = 4;
 
 /// Bytes before the first section.
 inline constexpr size_t kPvsPreludeBytes = 16;
@@ -21,7 +25,32 @@ inline constexpr size_t kSectionChecksumBytes = 8;
 /// Kinds of sections, four letters each.
 inline constexpr uint32_t kSectionHead = 0x44414548;  // "HEAD"
 inline constexpr uint32_t kSectionCell = 0x4c4c4543;  // "CELL"
+inline constexpr uint32_t kSectionCost = 0x54534f43;  // "COST"
 inline constexpr uint32_t kSectionEnd = 0x20444e45;   // "END "
+
+/// What is wrong with bytes of a file, without file and place.
+class Damage : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A cell and its index among the planned ones.
+struct IndexedCell {
+  uint32_t index = 0;
+  CellPvs pvs;
+};
+
+/// What a cell took: all that may differ between two equal bakes.
+struct CellCost {
+  uint32_t index = 0;  ///< among the planned ones
+  double random_seconds = 0, border_seconds = 0, reverse_seconds = 0;
+  double seconds = 0;
+  uint64_t peak_device_bytes = 0;
+  std::string device;
+};
+
+CellCost costOf(const CellPvs& cell, uint32_t index);
+void setCost(CellPvs& cell, const CellCost& cost);
 
 /// Magic, version, 0.
 Bytes writePrelude();
@@ -29,17 +58,22 @@ Bytes writePrelude();
 Bytes writeSection(uint32_t kind, std::span<const uint8_t> payload);
 
 Bytes writeHeadPayload(const PvsFile& pvs);
-Bytes writeCellPayload(const CellPvs& cell, uint32_t index);
+/// The cell without its cost. Throws Error, an error of this program, if its witnesses are not one a triangle
+/// or none, as `has_witnesses` says.
+Bytes writeCellPayload(const CellPvs& cell, uint32_t index, bool has_witnesses);
+/// Part of a COST section's payload, which is one or more of these.
+void writeCost(ByteWriter& out, const CellCost& cost);
 /// checksum: XXH3 of all bytes of the file before the section.
 Bytes writeEndPayload(uint32_t cells, uint64_t checksum);
 
-/// The three readers throw std::string: what is wrong, without file and place.
-PvsFile readHeadPayload(std::span<const uint8_t> payload);
-/// head: for planned cells and the limit of ids; index: that the section must have.
-CellPvs readCellPayload(std::span<const uint8_t> payload, const PvsFile& head, uint32_t index);
+/// The four readers throw Damage. version: of the format.
+PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version);
+/// head: for planned cells, the limit of ids and the version. In version 3 the cell's cost is in it.
+IndexedCell readCellPayload(std::span<const uint8_t> payload, const PvsFile& head);
+std::vector<CellCost> readCostPayload(std::span<const uint8_t> payload, const PvsFile& head);
 void checkEndPayload(std::span<const uint8_t> payload, uint32_t cells, uint64_t checksum);
 
-/// A whole file in memory; `file` is for messages. Throws Error.
+/// A whole file in memory; `file` is for messages. Throws BadPvs.
 PvsFile parsePvs(const Bytes& bytes, const std::filesystem::path& file);
 
 }  // namespace sightline

@@ -11,14 +11,15 @@
 #include <cstring>
 
 #include "core/error.h"
-#include "core/pvs/publish.h"
+#include "core/pvs/checksum.h"
 #include "core/pvs/pvs_sections.h"
+#include "core/scene/publish.h"
 
 namespace sightline {
 namespace {
 
-/// Bytes read at a time to hash what an earlier run wrote.
-constexpr size_t kHashChunk = 1 << 20;
+/// Bytes copied at a time into the finished file.
+constexpr size_t kCopyChunk = 1 << 20;
 
 [[noreturn]] void failOn(const std::filesystem::path& part, const char* action) {
   throw Error(fmt::format("{}: cannot {}: {}", part.string(), action, std::strerror(errno)));
@@ -31,7 +32,7 @@ bool sameFile(int descriptor, const std::filesystem::path& part) {
          opened.st_dev == named.st_dev && opened.st_ino == named.st_ino;
 }
 
-/// Closes the descriptor if a constructor fails after it was opened.
+/// Closes the descriptor at the end of a scope, unless it was taken.
 struct DescriptorGuard {
   int descriptor;
   ~DescriptorGuard() {
@@ -41,9 +42,7 @@ struct DescriptorGuard {
 
 }  // namespace
 
-PvsWriter::PvsWriter(const std::filesystem::path& part)
-    : part_(part), checksum_(XXH3_createState(), &XXH3_freeState) {
-  if (!checksum_) throw std::bad_alloc();
+PvsWriter::PvsWriter(const std::filesystem::path& part) : part_(part) {
   DescriptorGuard guard{::open(part.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)};
   if (guard.descriptor < 0) failOn(part, "create");
   if (::flock(guard.descriptor, LOCK_EX | LOCK_NB) != 0 || !sameFile(guard.descriptor, part)) {
@@ -61,47 +60,80 @@ PvsWriter::~PvsWriter() {
 
 void PvsWriter::begin(const PvsFile& head) {
   if (::ftruncate(descriptor_, 0) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0) failOn(part_, "empty");
-  XXH3_64bits_reset(checksum_.get());
-  cells_ = 0;
   has_witnesses_ = head.has_witnesses;
+  size_ = 0;
+  costs_ = {};
   write(writePrelude());
   write(writeSection(kSectionHead, writeHeadPayload(head)));
+  places_ = {{0, size_}};
 }
 
 void PvsWriter::goOn(const PartialPvs& left) {
-  if (::ftruncate(descriptor_, off_t(left.whole_bytes)) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0) {
+  size_ = left.whole_bytes;
+  if (::ftruncate(descriptor_, off_t(size_)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0) {
     failOn(part_, "cut");
   }
-  XXH3_64bits_reset(checksum_.get());
-  cells_ = uint32_t(left.pvs.cells.size());
   has_witnesses_ = left.pvs.has_witnesses;
-  std::vector<char> chunk(kHashChunk);
-  for (uint64_t todo = left.whole_bytes; todo != 0;) {
-    const ssize_t got = ::read(descriptor_, chunk.data(), size_t(std::min<uint64_t>(todo, chunk.size())));
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) failOn(part_, "read");
-    XXH3_64bits_update(checksum_.get(), chunk.data(), size_t(got));
-    todo -= uint64_t(got);
-  }
+  places_ = left.places;
+  costs_ = {};
+  for (uint32_t index = 0; index < cells(); ++index) writeCost(costs_, costOf(left.pvs.cells[index], index));
 }
 
 void PvsWriter::write(const Bytes& bytes) {
   writeAll(descriptor_, bytes, part_);
-  XXH3_64bits_update(checksum_.get(), bytes.data(), bytes.size());
   if (::fdatasync(descriptor_) != 0) failOn(part_, "flush to disk");
+  size_ += bytes.size();
 }
 
 void PvsWriter::append(const CellPvs& cell) {
-  if (cell.witnesses.size() != (has_witnesses_ ? cell.triangles.size() : 0)) {
-    throw Error(fmt::format("{}: cell {} has {} witnesses for {} triangles: an error of this program",
-                            part_.string(), cell.cell.name, cell.witnesses.size(), cell.triangles.size()));
+  const CellCost cost = costOf(cell, cells());
+  ByteWriter own_cost, both;
+  writeCost(own_cost, cost);
+  both.raw(writeSection(kSectionCell, writeCellPayload(cell, cells(), has_witnesses_)));
+  const ByteRange place{size_, both.bytes().size()};
+  both.raw(writeSection(kSectionCost, own_cost.bytes()));
+  write(both.bytes());
+  places_.push_back(place);
+  writeCost(costs_, cost);
+}
+
+void PvsWriter::writeFinished(int descriptor, const std::filesystem::path& file) const {
+  Checksum checksum;
+  const auto writeOn = [&](std::span<const uint8_t> bytes) {
+    writeAll(descriptor, bytes, file);
+    checksum.add(bytes);
+  };
+  Bytes chunk(kCopyChunk);
+  for (ByteRange todo : places_) {
+    while (todo.size != 0) {
+      const size_t most = size_t(std::min<uint64_t>(todo.size, chunk.size()));
+      const ssize_t got = ::pread(descriptor_, chunk.data(), most, off_t(todo.offset));
+      if (got < 0 && errno == EINTR) continue;
+      if (got <= 0) failOn(part_, "read");
+      writeOn(std::span(chunk).first(size_t(got)));
+      todo.offset += uint64_t(got);
+      todo.size -= uint64_t(got);
+    }
   }
-  write(writeSection(kSectionCell, writeCellPayload(cell, cells_)));
-  ++cells_;
+  writeOn(writeSection(kSectionCost, costs_.bytes()));
+  writeOn(writeSection(kSectionEnd, writeEndPayload(cells(), checksum.value())));
 }
 
 void PvsWriter::finish(const std::filesystem::path& file) {
-  write(writeSection(kSectionEnd, writeEndPayload(cells_, XXH3_64bits_digest(checksum_.get()))));
+  auto finished = part_;
+  finished += ".tmp";
+  // The lock on the part file is one on this name, too; the new file takes it over before it has the name.
+  DescriptorGuard guard{::open(finished.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)};
+  if (guard.descriptor < 0) failOn(finished, "create");
+  try {
+    if (::flock(guard.descriptor, LOCK_EX | LOCK_NB) != 0) failOn(finished, "lock");
+    writeFinished(guard.descriptor, finished);
+    publish(guard.descriptor, finished, part_);
+  } catch (...) {
+    ::unlink(finished.c_str());
+    throw;
+  }
+  std::swap(descriptor_, guard.descriptor);
   publish(descriptor_, part_, file);
 }
 

@@ -43,6 +43,7 @@ void addCellStatistics(Json& json, const CellSummary& cell, uint64_t triangles) 
   json["error_bound_rays"] = stats.bound_rays;
   json["error_bound_tests"] = stats.bound_tests;
   json["peak_device_bytes"] = stats.peak_device_bytes;
+  json["device"] = cell.device;
 }
 
 std::string jsonText(const Json& json, int indent) {

@@ -22,6 +22,7 @@ Json toJson(const std::optional<DeviceInfo>& device) {
           {"name", device->name},
           {"driver", device->driver},
           {"layout", device->layout},
+          {"exact", device->exact},
           {"memory_bytes", device->memory_bytes},
           {"driver_tree_parts", device->driver_tree_parts},
           {"driver_tree_bytes", device->driver_tree_bytes},

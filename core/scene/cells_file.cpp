@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <set>
 
 #include "core/error.h"
+#include "core/scene/check_cells.h"
 #include "core/scene/file_io.h"
 #include "core/scene/json_text.h"
-#include "core/scene/scene.h"
 #include "core/scene/view_cell.h"
 
 namespace sightline {
@@ -40,58 +39,9 @@ glm::dvec3 readVector(const json& value, const std::string& file, const std::str
   return result;
 }
 
-void checkName(const std::string& name, const std::string& file, const std::string& place) {
-  if (name.empty()) fail(file, place, "is empty; every cell needs a name");
-  for (const char c : name) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) fail(file, place, "has a control character");
-  }
-}
-
-void checkFinite(const glm::dvec3& value, const std::string& file, const std::string& place) {
-  for (int i = 0; i < 3; ++i) {
-    if (!std::isfinite(value[i])) fail(file, fmt::format("{}[{}]", place, i), "is not a finite number");
-  }
-}
-
-void checkSize(const glm::dvec3& size, const std::string& file, const std::string& place) {
-  int zeros = 0;
-  for (int i = 0; i < 3; ++i) {
-    const std::string element = fmt::format("{}[{}]", place, i);
-    if (size[i] < 0.0) fail(file, element, fmt::format("{} is negative", size[i]));
-    if (size[i] == 0.0) ++zeros;
-    if (size[i] > 0.0 && size[i] < kSmallestExtent) {
-      fail(file, element, fmt::format("{} is too small: at least {:g}, or 0", size[i], kSmallestExtent));
-    }
-  }
-  if (zeros > 1) fail(file, place, "the cell has no area; at most one extent may be 0");
-}
-
-void checkCell(const ViewCell& cell, const std::string& file, const std::string& place) {
-  checkName(cell.name, file, place + ".name");
-  checkFinite(cell.center, file, place + ".center");
-  checkFinite(cell.size, file, place + ".size");
-  checkFinite(cell.rotation, file, place + ".rotation");
-  checkSize(cell.size, file, place + ".size");
-  for (const glm::vec3& corner : cellCorners(cell)) {
-    for (int axis = 0; axis < 3; ++axis) {
-      if (std::abs(corner[axis]) <= kLargestCoordinate) continue;
-      fail(file, place, "reaches farther than 2^40 from the origin, too far to trace: scale scene and cells");
-    }
-  }
-}
-
-/// Every cell by itself, then that no name occurs twice.
+/// Throws Error if a cell cannot be baked.
 void checkCells(const std::vector<ViewCell>& cells, const std::string& file) {
-  if (cells.empty()) fail(file, "cells", "is empty; at least one view cell is needed");
-  std::set<std::string> names;
-  for (size_t i = 0; i < cells.size(); ++i) {
-    const std::string place = fmt::format("cells[{}]", i);
-    checkCell(cells[i], file, place);
-    if (!names.insert(cells[i].name).second) {
-      fail(file, place + ".name",
-           fmt::format("{} is the name of an earlier cell", json(cells[i].name).dump()));
-    }
-  }
+  if (const auto problem = cellProblem(cells)) fail(file, problem->place, problem->what);
 }
 
 ViewCell readCell(const json& value, const std::string& file, const std::string& place) {

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "core/error.h"
+#include "core/scene/publish.h"
 
 namespace sightline {
 namespace {
@@ -70,10 +71,19 @@ OutputFile::OutputFile(std::filesystem::path file) : file_(std::move(file)) {
     file_ = file_.parent_path() / std::filesystem::read_symlink(file_, ignored);
   }
   requireReplaceable(file_);
-  temporary_ = file_;
-  temporary_ += fmt::format(".tmp{}", getpid());
-  stream_ = std::fopen(temporary_.c_str(), "wbe");
-  if (stream_ == nullptr) fail("create");
+  // A name that nobody else writes to: another process, or this one on another thread.
+  int descriptor = -1;
+  for (uint32_t i = 0; descriptor < 0; ++i) {
+    temporary_ = file_;
+    temporary_ += fmt::format(".tmp{}-{}", getpid(), i);
+    descriptor = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0 && errno != EEXIST) fail("create");
+  }
+  stream_ = fdopen(descriptor, "wb");
+  if (stream_ != nullptr) return;
+  close(descriptor);
+  std::remove(temporary_.c_str());
+  throw std::bad_alloc();  // the one reason that fdopen has
 }
 
 OutputFile::~OutputFile() {
@@ -92,7 +102,7 @@ void OutputFile::write(const void* bytes, size_t size) {
 
 void OutputFile::commit() {
   if (std::fflush(stream_) != 0) fail("write");
-  if (std::rename(temporary_.c_str(), file_.c_str()) != 0) fail("rename the finished file to this name");
+  publish(fileno(stream_), temporary_, file_);
   std::FILE* stream = stream_;
   stream_ = nullptr;
   if (std::fclose(stream) != 0) fail("close");

@@ -24,8 +24,8 @@ FileBytes readFile(const std::filesystem::path& file);
 void requireReplaceable(const std::filesystem::path& file);
 
 /// A file that appears under its name only when it is complete: bytes go to a temporary name beside it,
-/// commit() renames. Without commit the temporary file is removed. A link is followed; what must not be
-/// replaced is not (requireReplaceable). All throw Error with file and reason.
+/// commit() flushes it to the disk and renames it. Without commit the temporary file is removed. A link is
+/// followed; what must not be replaced is not (requireReplaceable). All throw Error with file and reason.
 class OutputFile {
  public:
   explicit OutputFile(std::filesystem::path file);

@@ -7,6 +7,7 @@
 #include <regex>
 #include <sstream>
 
+#include "core/pvs/pvs_writer.h"
 #include "tests/cli/run_program.h"
 #include "tests/support/temporary_folder.h"
 
@@ -81,9 +82,13 @@ TEST_F(BakeHtml, CsvHoldsTheCellsOfAnEarlierRun) {
   std::ofstream(folder_ / "cells.json") << R"({"cells":[{"name":"a","center":[0,30,0],"size":[4,2,4]},
       {"name":"b","center":[0,40,0],"size":[4,2,4]},{"name":"c","center":[0,50,0],"size":[4,2,4]}]})";
   ASSERT_EQ(runProgram(bake("--csv " + path("whole.csv"))).exit_code, 0);
-  const std::string whole = textOf(folder_ / "city.pvs");
-  std::filesystem::rename(folder_ / "city.pvs", folder_ / "city.pvs.part");
-  std::filesystem::resize_file(folder_ / "city.pvs.part", whole.size() - 100);  // within the last cell
+  const PvsFile whole = loadPvs(folder_ / "city.pvs");
+  std::filesystem::remove(folder_ / "city.pvs");
+  {
+    PvsWriter stopped(folder_ / "city.pvs.part");
+    stopped.begin(whole);
+    for (const size_t cell : {0, 1}) stopped.append(whole.cells[cell]);
+  }
   const std::string going_on =
       std::regex_replace(bake("--csv " + path("rest.csv")), std::regex("--overwrite"), "");
   const ProgramRun run = runProgram(going_on);

@@ -10,6 +10,7 @@
 #include "core/scene/file_io.h"
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"
+#include "tests/output/version_3_file.h"
 
 namespace sightline {
 namespace {
@@ -84,12 +85,39 @@ TEST(InfoCommand, FailsOnDamagedAndMissingFiles) {
   bytes[bytes.size() / 2] ^= 1;
   writeBytes(files / "flipped.pvs", bytes);
   expectFails("info " + (files / "flipped.pvs"), 1, "damaged");
+  writeBytes(files / "text.pvs", {'v', ' ', '0', '\n'});
+  expectFails("info " + (files / "text.pvs"), 1, "text.pvs: not a .pvs file");
   bytes[8] = 99;
   writeBytes(files / "version.pvs", bytes);
   expectFails("info " + (files / "version.pvs"), 1, "version 99");
   EXPECT_EQ(std::system(("'" SL_PROGRAM "' info " + files.scene() + " > /dev/full 2>/dev/null").c_str()),
             1 << 8);
   EXPECT_EQ(std::system(("'" SL_PROGRAM "' info " + files.scene() + " | true").c_str()), 0);
+}
+
+/// Whatever reads a .pvs file refuses a cell that no ray can leave.
+TEST(InfoCommand, CellsWithoutAreaAreNeitherShownNorMeasured) {
+  const Files files;
+  PvsFile pvs = loadPvs(files.pvs());
+  pvs.planned[0].size = {0, 0, 1};
+  savePvs(pvs, files / "line.pvs");
+  const std::string reason = "cells[0].size: the cell has no area";
+  expectFails("info " + (files / "line.pvs"), 1, reason);
+  expectFails("measure " + files.scene() + " " + (files / "line.pvs") + " --device cpu", 1, reason);
+  expectFails("export " + (files / "line.pvs") + " --cell 0 --format ids -o " + (files / "x.txt"), 1, reason);
+}
+
+TEST(InfoCommand, SaysOfWhichFormatAndAlgorithmASetIs) {
+  const Files files;
+  PvsFile pvs = loadPvs(files.pvs());
+  pvs.algorithm = 5;
+  savePvs(pvs, files / "exact.pvs");
+  expectSays("info " + (files / "exact.pvs"), {"format version 4", "algorithm        revision 5\n"});
+  pvs.intersector = "GPU, driver 5";
+  savePvs(pvs, files / "driver.pvs");
+  expectSays("info " + (files / "driver.pvs"), {"revision 5, intersection test of GPU, driver 5\n"});
+  writeBytes(files / "old.pvs", kVersion3File);
+  expectSays("info " + (files / "old.pvs"), {"format version 3", "revision 1\n", "2 of 3 baked"});
 }
 
 TEST(ExportCommand, WritesIdsAndJson) {

@@ -7,6 +7,8 @@
 
 #include "core/error.h"
 #include "tests/output/example_pvs.h"
+#include "tests/output/system_calls.h"
+#include "tests/output/version_3_file.h"
 
 namespace sightline {
 namespace {
@@ -71,6 +73,7 @@ TEST(Bake, GoesOnAfterAStopAndGivesTheSameBytes) {
     EXPECT_EQ(bake.resumed(), cells);
     EXPECT_TRUE(bake.run("fake", fakeBaker));
     EXPECT_EQ(readBytes(file), readBytes(folder / "whole.pvs")) << cells;
+    EXPECT_FALSE(std::filesystem::exists(partFileOf(file)));
   }
 }
 
@@ -86,15 +89,22 @@ TEST(Bake, InterruptedInsideACellKeepsTheOthers) {
   EXPECT_EQ(Bake(fiveCells(), folder / "x.pvs").resumed(), 2u);
 }
 
+/// The part file of a whole bake, as it is before the end.
+std::vector<uint8_t> wholePart(const std::filesystem::path& file) {
+  std::vector<uint8_t> part;
+  BakeEvents events;
+  events.cell_done = [&](uint32_t, const CellPvs&) { part = readBytes(partFileOf(file)); };
+  EXPECT_TRUE(Bake(fiveCells(), file).run("fake", fakeBaker, events));
+  return part;
+}
+
 TEST(Bake, EveryCutOfThePartFileLosesOnlyTheTornCell) {
   TemporaryFolder folder;
-  Bake whole(fiveCells(), folder / "whole.pvs");
-  EXPECT_TRUE(whole.run("fake", fakeBaker));
-  const auto bytes = readBytes(folder / "whole.pvs");  // the part file grows to exactly these bytes
+  const auto part = wholePart(folder / "whole.pvs"), bytes = readBytes(folder / "whole.pvs");
   size_t before = 0;
-  for (size_t size = 0; size <= bytes.size(); size += size < 400 ? 1 : 7) {
+  for (size_t size = 0; size <= part.size(); size += size < 400 ? 1 : 7) {
     const auto file = folder / "x.pvs";
-    writeBytes(folder / "x.pvs.part", {bytes.begin(), bytes.begin() + ptrdiff_t(size)});
+    writeBytes(folder / "x.pvs.part", {part.begin(), part.begin() + ptrdiff_t(size)});
     Bake bake(fiveCells(), file);
     EXPECT_GE(bake.resumed(), before);
     EXPECT_LE(bake.resumed(), before + 1);
@@ -103,7 +113,149 @@ TEST(Bake, EveryCutOfThePartFileLosesOnlyTheTornCell) {
     ASSERT_EQ(readBytes(file), bytes) << "part file cut at " << size;
     std::filesystem::remove(file);
   }
-  EXPECT_EQ(before, 5u);
+  EXPECT_EQ(Bake(fiveCells(), folder / "whole.pvs").resumed(), 5u);
+}
+
+/// A kill while the finished file is put in place leaves it as the part file.
+TEST(Bake, GoesOnFromAFinishedFileThatHasNotItsNameYet) {
+  TemporaryFolder folder;
+  wholePart(folder / "whole.pvs");
+  const auto bytes = readBytes(folder / "whole.pvs");
+  for (size_t size = 0; size <= bytes.size(); size += size < 400 ? 1 : 7) {
+    writeBytes(folder / "x.pvs.part", {bytes.begin(), bytes.begin() + ptrdiff_t(size)});
+    writeBytes(folder / "x.pvs.part.tmp", {1, 2, 3});
+    Bake bake(fiveCells(), folder / "x.pvs");
+    EXPECT_TRUE(bake.run("fake", fakeBaker));
+    ASSERT_EQ(readBytes(folder / "x.pvs"), bytes) << "cut at " << size;
+    std::filesystem::remove(folder / "x.pvs");
+  }
+  writeBytes(folder / "x.pvs.part", bytes);
+  EXPECT_EQ(Bake(fiveCells(), folder / "x.pvs").resumed(), 5u);
+}
+
+TEST(Bake, AFailureAtTheVeryEndLosesNoCell) {
+  TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "x.pvs.part.tmp");  // where the finished file should be written
+  {
+    Bake bake(fiveCells(), folder / "x.pvs");
+    EXPECT_THROW(bake.run("fake", fakeBaker), Error);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "x.pvs"));
+  std::filesystem::remove(folder / "x.pvs.part.tmp");
+  Bake again(fiveCells(), folder / "x.pvs");
+  EXPECT_EQ(again.resumed(), 5u);
+  EXPECT_TRUE(again.run("fake", fakeBaker));
+  EXPECT_EQ(loadPvs(folder / "x.pvs").cells.size(), 5u);
+}
+
+/// Times, memory and devices stand behind the rest, and say of each cell what it took itself.
+TEST(Bake, EqualBakesAreEqualBytesUpToWhatTheyTook) {
+  TemporaryFolder folder;
+  const auto slowBaker = [](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
+    CellPvs pvs = fakeBaker(cell, index, progress);
+    pvs.stats.seconds = 100 + index;
+    pvs.stats.random.seconds = 10 + index;
+    pvs.stats.border.seconds = 20 + index;
+    pvs.stats.reverse.seconds = 30 + index;
+    pvs.stats.peak_device_bytes = 40 + index;
+    return pvs;
+  };
+  EXPECT_TRUE(Bake(fiveCells(), folder / "quick.pvs").run("fake", fakeBaker));
+  bakeSome(folder / "mixed.pvs", 2);
+  EXPECT_TRUE(Bake(fiveCells(), folder / "mixed.pvs").run("slow device", slowBaker));
+  EXPECT_NE(readBytes(folder / "mixed.pvs"), readBytes(folder / "quick.pvs"));
+  const auto equal = bytesBeforeCosts(folder / "quick.pvs");
+  EXPECT_LT(equal.size(), readBytes(folder / "quick.pvs").size());
+  EXPECT_EQ(bytesBeforeCosts(folder / "mixed.pvs"), equal);
+  const PvsFile mixed = loadPvs(folder / "mixed.pvs");
+  EXPECT_EQ(mixed.device, "fake");
+  EXPECT_EQ(mixed.cells[1].device, "fake");
+  EXPECT_EQ(mixed.cells[1].stats.seconds, 1.5);
+  EXPECT_EQ(mixed.cells[2].device, "slow device");
+  EXPECT_EQ(mixed.cells[2].stats.seconds, 102);
+  EXPECT_EQ(mixed.cells[4].stats.reverse.seconds, 34);
+  EXPECT_EQ(mixed.cells[4].stats.peak_device_bytes, 44u);
+}
+
+/// Its times, too, are there before the bake is.
+TEST(Bake, AnInterruptedOneHasItsTimes) {
+  TemporaryFolder folder;
+  bakeSome(folder / "x.pvs", 2);
+  const PartialPvs left = loadPartialPvs(folder / "x.pvs.part");
+  ASSERT_EQ(left.pvs.cells.size(), 2u);
+  EXPECT_EQ(left.problem, "");
+  EXPECT_EQ(left.pvs.cells[1].stats.seconds, 1.5);
+  EXPECT_EQ(left.pvs.cells[1].device, "fake");
+}
+
+TEST(Bake, RefusesToGoOnWithAnotherAlgorithmOrIntersector) {
+  TemporaryFolder folder;
+  EXPECT_TRUE(Bake(fiveCells(), folder / "done.pvs").run("fake", fakeBaker));
+  bakeSome(folder / "part.pvs", 2);
+  const auto expectRefused = [&](auto change, const std::string& part) {
+    PvsFile other = fiveCells();
+    change(other);
+    for (const char* name : {"done.pvs", "part.pvs"}) {
+      const std::string line = problem(other, folder / name);
+      EXPECT_NE(line.find(part), std::string::npos) << line;
+      EXPECT_NE(line.find("choose another -o, or --overwrite it"), std::string::npos) << line;
+    }
+  };
+  expectRefused([](PvsFile& f) { f.algorithm = 8; }, "revision of the algorithm (7 there, 8 now)");
+  expectRefused([](PvsFile& f) { f.intersector = ""; },
+                "intersection test (that of GPU, driver 5 there, that of cpu and opencl now)");
+  expectRefused([](PvsFile& f) { f.intersector = "GPU, driver 6"; },
+                "intersection test (that of GPU, driver 5 there, that of GPU, driver 6 now)");
+  EXPECT_EQ(Bake(fiveCells(), folder / "part.pvs").resumed(), 2u);
+}
+
+TEST(Bake, RefusesToGoOnWithAFileOfAnOlderFormat) {
+  TemporaryFolder folder;
+  writeBytes(folder / "x.pvs.part", kVersion3File);
+  PvsFile same = examplePvs();
+  same.intersector = "";
+  EXPECT_NE(problem(same, folder / "x.pvs").find("version of the format (3 there, 4 now)"),
+            std::string::npos);
+  EXPECT_EQ(readBytes(folder / "x.pvs.part"), kVersion3File);
+}
+
+TEST(Bake, OverwritesWhatIsDamagedButNotWhatItCannotRead) {
+  TemporaryFolder folder;
+  bakeSome(folder / "x.pvs", 2);
+  const auto part = readBytes(folder / "x.pvs.part");
+  SystemCalls::reads_fail = true;
+  std::string line;
+  try {
+    Bake(fiveCells(), folder / "x.pvs", true);
+  } catch (const Error& error) {
+    line = error.what();
+  }
+  SystemCalls::reads_fail = false;
+  EXPECT_NE(line.find("x.pvs.part: cannot read"), std::string::npos) << line;
+  EXPECT_EQ(readBytes(folder / "x.pvs.part"), part);
+  writeBytes(folder / "x.pvs.part", std::vector<uint8_t>(100, 7));
+  EXPECT_EQ(Bake(fiveCells(), folder / "x.pvs", true).resumed(), 0u);
+}
+
+TEST(Bake, APartFileOfAnotherKindIsNotReplaced) {
+  TemporaryFolder folder;
+  writeBytes(folder / "x.pvs.part", {'a', 'b', 'c'});
+  EXPECT_NE(problem(fiveCells(), folder / "x.pvs").find("not a .pvs file"), std::string::npos);
+  EXPECT_EQ(readBytes(folder / "x.pvs.part").size(), 3u);
+}
+
+TEST(Bake, RefusesCellsThatNoReaderWouldTake) {
+  TemporaryFolder folder;
+  PvsFile inputs = fiveCells();
+  inputs.planned[3].size = {0, 0, 1};
+  EXPECT_EQ(problem(inputs, folder / "x.pvs"),
+            "cells[3].size: the cell has no area; at most one extent may be 0");
+}
+
+/// Whoever uses the library catches std::exception.
+TEST(Bake, WhatItThrowsIsAnException) {
+  EXPECT_TRUE((std::is_base_of_v<std::exception, Interrupted>));
+  EXPECT_TRUE((std::is_base_of_v<std::exception, BadPvs>));
 }
 
 TEST(Bake, KilledAtAnyMomentGoesOn) {
@@ -156,6 +308,9 @@ TEST(Bake, NamesEveryDifferenceOfTheInputs) {
   const auto contains = [](const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
   };
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.version = 3; }), "version of the format"));
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.algorithm = 8; }), "revision of the algorithm"));
+  EXPECT_TRUE(contains(difference([](PvsFile& f) { f.intersector = "other"; }), "intersection test"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.scene_hash ^= 1; }), "scene"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.planned.pop_back(); }), "number of cells (5 there, 4"));
   EXPECT_TRUE(contains(difference([](PvsFile& f) { f.planned[2].size.x = 9; }), "cell-2"));

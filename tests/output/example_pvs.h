@@ -1,4 +1,5 @@
 #pragma once
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -20,9 +21,25 @@ inline void writeBytes(const std::filesystem::path& file, const std::vector<uint
   out.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
 }
 
+/// The file up to what may differ between two equal bakes: times, memory, device. All of it if there is none.
+inline std::vector<uint8_t> bytesBeforeCosts(const std::filesystem::path& file) {
+  std::vector<uint8_t> bytes = readBytes(file);
+  for (size_t section = 16; section + 16 <= bytes.size();) {
+    uint64_t size = 0;
+    std::memcpy(&size, bytes.data() + section + 8, sizeof size);
+    if (std::memcmp(bytes.data() + section, "COST", 4) == 0) {
+      bytes.resize(section);
+      break;
+    }
+    section += 16 + size + 8;
+  }
+  return bytes;
+}
+
 inline CellPvs exampleCell(const ViewCell& cell, std::vector<uint32_t> ids, bool witnesses) {
   CellPvs pvs;
   pvs.cell = cell;
+  pvs.device = "cpu";
   pvs.stats.random = {1000, ids.size(), 0.5};
   pvs.stats.border = {2000, 3, 0.25};
   pvs.stats.reverse = {30, 1, 0.125};
@@ -48,6 +65,8 @@ inline CellPvs exampleCell(const ViewCell& cell, std::vector<uint32_t> ids, bool
 /// Two cells of three planned; the second set is empty.
 inline PvsFile examplePvs(bool witnesses = true) {
   PvsFile pvs;
+  pvs.algorithm = 7;
+  pvs.intersector = "GPU, driver 5";
   pvs.scene_hash = 0x0123456789abcdefu;
   pvs.triangle_count = 1000;
   pvs.scene_name = "courtyard.obj";

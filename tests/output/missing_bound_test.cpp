@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
+#include "core/pvs/portable_math.h"
 #include "core/pvs/pvs.h"
 
 namespace sightline {
@@ -83,6 +85,50 @@ TEST(MissingBound, RaysForABound) {
   }
   // Poisson: exp(-x) = 0.05.
   EXPECT_NEAR(double(raysForBound(0, 1e-6, 0.05)), 2.9957e6, 100);
+}
+
+/// Bounds stand in files and decide when a bake stops: the same bits with every mathematics library.
+TEST(MissingBound, IsTheSameToTheLastBitEverywhere) {
+  EXPECT_EQ(missingUpperBound(0, 1'000'000), 0x1.ef1cb2fa718e6p-19);
+  EXPECT_EQ(missingUpperBound(3, 10), 0x1.4e0e4cca611dbp-1);
+  EXPECT_EQ(missingUpperBound(7, 1000), 0x1.d6d98b408cffcp-7);
+  EXPECT_EQ(missingUpperBound(100, 100'000), 0x1.3ecd882fe79c5p-10);
+  EXPECT_EQ(missingUpperBound(5, 10'000'000'000), 0x1.40bc9665105a3p-30);
+  EXPECT_EQ(raysForBound(8, 0.001, 0.03), 15419u);
+  EXPECT_EQ(raysForBound(8, 1e-6, 0.001), 21156192u);
+  EXPECT_EQ(raysForBound(0, 0x1p-20, 1e-8), 19315475u);
+}
+
+/// lgamma writes a variable of the whole process; bounds are asked for on several threads.
+TEST(MissingBound, WritesNothingThatOthersRead) {
+  signgam = 42;
+  missingUpperBound(3, 10);
+  EXPECT_EQ(signgam, 42);
+}
+
+/// The difference in units in the last place of `want`.
+double ulps(double got, long double want) {
+  const double near = double(want);
+  return double(std::fabs(got - want)) / (std::nextafter(std::fabs(near), HUGE_VAL) - std::fabs(near));
+}
+
+TEST(PortableMath, IsRightToAFewUnitsInTheLastPlace) {
+  const unsigned seed = 3;
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> exponents(-700, 700), near_zero(-1, 1);
+  for (int i = 0; i < 100'000; ++i) {
+    const double x = exponents(random), y = std::exp(x), z = near_zero(random), near_one = 1 + z * 1e-3;
+    ASSERT_LE(ulps(portableExp(x), std::exp((long double)x)), 2) << x << " seed " << seed;
+    ASSERT_LE(ulps(portableLog(y), std::log((long double)y)), 3) << y << " seed " << seed;
+    ASSERT_LE(ulps(portableLog(near_one), std::log((long double)near_one)), 3)
+        << near_one << " seed " << seed;
+    ASSERT_LE(ulps(portableExpm1(z), std::expm1((long double)z)), 3) << z << " seed " << seed;
+  }
+  EXPECT_EQ(portableLog(1), 0);
+  EXPECT_EQ(portableExp(0), 1);
+  EXPECT_EQ(portableExpm1(0), 0);
+  EXPECT_EQ(portableExp(-800), 0);
+  EXPECT_EQ(portableExp(800), HUGE_VAL);
 }
 
 }  // namespace

@@ -77,6 +77,7 @@ void checkHead(Cursor head, const PvsFile& want) {
   EXPECT_EQ(head.u64(), want.scene_hash);
   EXPECT_EQ(head.u32(), want.triangle_count);
   EXPECT_EQ(head.u32(), 1u);
+  EXPECT_EQ(head.u32(), want.algorithm);
   const BakeParams& p = want.params;
   EXPECT_EQ(head.u32(), uint32_t(p.method));
   for (uint32_t value : {p.n_rand, p.n_abs_edge, p.n_rs_edge, p.n_rs_area}) EXPECT_EQ(head.u32(), value);
@@ -92,7 +93,7 @@ void checkHead(Cursor head, const PvsFile& want) {
   EXPECT_EQ(head.u32(), p.reverse_stride);
   EXPECT_EQ(head.u32(), uint32_t(p.order));
   EXPECT_EQ(head.text(), want.scene_name);
-  EXPECT_EQ(head.text(), want.device);
+  EXPECT_EQ(head.text(), want.intersector);
   ASSERT_EQ(head.u32(), want.planned.size());
   for (const ViewCell& cell : want.planned) {
     EXPECT_EQ(head.text(), cell.name);
@@ -107,18 +108,25 @@ void checkStats(Cursor& cell, const CellStats& want) {
   for (const StageStats& stage : {want.random, want.border, want.reverse}) {
     EXPECT_EQ(cell.u64(), stage.rays);
     EXPECT_EQ(cell.u64(), stage.new_triangles);
-    EXPECT_EQ(cell.f64(), stage.seconds);
   }
   EXPECT_EQ(cell.u64(), want.contained_triangles);
   EXPECT_EQ(cell.u32(), want.iterations);
   EXPECT_EQ(cell.u32(), uint32_t(want.stop));
-  for (uint64_t value : {want.validation_rays, want.missing_rays, want.peak_device_bytes}) {
+  for (uint64_t value : {want.validation_rays, want.missing_rays, want.bound_rays}) {
     EXPECT_EQ(cell.u64(), value);
   }
-  EXPECT_EQ(cell.u64(), want.bound_rays);
   EXPECT_EQ(cell.u32(), want.bound_tests);
   EXPECT_EQ(cell.f64(), want.error_bound);
-  EXPECT_EQ(cell.f64(), want.seconds);
+}
+
+void checkCost(Cursor& cost, uint32_t index, const CellPvs& want) {
+  EXPECT_EQ(cost.u32(), index);
+  for (const StageStats& stage : {want.stats.random, want.stats.border, want.stats.reverse}) {
+    EXPECT_EQ(cost.f64(), stage.seconds);
+  }
+  EXPECT_EQ(cost.f64(), want.stats.seconds);
+  EXPECT_EQ(cost.u64(), want.stats.peak_device_bytes);
+  EXPECT_EQ(cost.text(), want.device);
 }
 
 void checkWitnesses(const std::vector<uint8_t>& content, const std::vector<Witness>& want) {
@@ -153,10 +161,13 @@ TEST(PvsFormat, AReaderWrittenFromTheDocumentReadsAFile) {
   savePvs(want, folder / "x.pvs");
   const auto bytes = readBytes(folder / "x.pvs");
   Cursor file{bytes.data(), bytes.data() + bytes.size()};
-  const uint8_t prelude[16] = {0x89, 0x53, 0x4c, 0x50, 0x56, 0x53, 0x0d, 0x0a, 3};
+  const uint8_t prelude[16] = {0x89, 0x53, 0x4c, 0x50, 0x56, 0x53, 0x0d, 0x0a, 4};
   EXPECT_EQ(std::memcmp(file.skip(16), prelude, 16), 0);
   checkHead(section(file, "HEAD"), want);
   for (uint32_t i = 0; i < want.cells.size(); ++i) checkCell(section(file, "CELL"), i, want.cells[i]);
+  Cursor costs = section(file, "COST");
+  for (uint32_t i = 0; i < want.cells.size(); ++i) checkCost(costs, i, want.cells[i]);
+  EXPECT_EQ(costs.at, costs.end);
   const auto before_end = size_t(file.at - bytes.data());
   Cursor end = section(file, "END ");
   EXPECT_EQ(end.u32(), want.cells.size());

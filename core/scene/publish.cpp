@@ -1,4 +1,4 @@
-#include "core/pvs/publish.h"
+#include "core/scene/publish.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>
@@ -14,6 +14,11 @@ namespace {
 
 [[noreturn]] void failOn(const std::filesystem::path& file, const char* action) {
   throw Error(fmt::format("{}: cannot {}: {}", file.string(), action, std::strerror(errno)));
+}
+
+/// Whether the file's bytes are on the disk, as far as its file system can say.
+bool flushed(int descriptor) {
+  return ::fsync(descriptor) == 0 || errno == EINVAL || errno == ENOSYS || errno == ENOTSUP;
 }
 
 /// Without it the rename may be lost with the power. Some file systems cannot; then the rename must do.
@@ -37,7 +42,7 @@ void writeAll(int descriptor, std::span<const uint8_t> bytes, const std::filesys
 }
 
 void publish(int descriptor, const std::filesystem::path& from, const std::filesystem::path& to) {
-  if (::fsync(descriptor) != 0) failOn(from, "flush to disk");
+  if (!flushed(descriptor)) failOn(from, "flush to disk");
   if (::rename(from.c_str(), to.c_str()) != 0) failOn(to, "put in place");
   flushFolder(to);
 }
