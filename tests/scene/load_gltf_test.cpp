@@ -213,6 +213,31 @@ TEST(LoadGltf, TexturesAndOtherThingsAreNotNeeded) {
   EXPECT_EQ(loadText("a.glb", file.glb()).triangles, kTwo);
 }
 
+TEST(LoadGltf, BuffersOutsideTheFolderAreRefused) {
+  const Folder folder;
+  const GltfFile file = squareFile<uint16_t>(5123);
+  const std::string outside = folder.write("b.bin", file.bin).string();
+  std::filesystem::create_directories(folder / "scene/sub");
+  folder.write("scene/b.bin", file.bin);
+  folder.write("scene/..b.bin", file.bin);
+  const auto load = [&](const std::string& uri) {
+    return loadScene(folder.write("scene/a.gltf", file.gltf(uri)));
+  };
+  std::string encoded;
+  for (const char c : outside) encoded += c == '/' ? "%2f" : std::string(1, c);
+  for (const std::string& uri :
+       {std::string("../b.bin"), std::string("%2E%2e/b.bin"), std::string("..%2fb.bin"),
+        std::string("sub/../../b.bin"), std::string("./../scene/b.bin"), outside, encoded}) {
+    EXPECT_EQ(test::errorOf([&] { load(uri); }),
+              "scene/a.gltf: buffers[0].uri: lies outside of the scene's folder, where nothing is read; put "
+              "it beside "
+              "the scene")
+        << uri;
+  }
+  for (const char* uri : {"b.bin", "./b.bin", "sub/../b.bin", "..b.bin"})
+    EXPECT_EQ(load(uri).triangles, kTwo) << uri;
+}
+
 TEST(LoadGltf, ErrorsNameThePlace) {
   using Change = std::function<void(json&)>;
   const std::pair<Change, std::string> cases[] = {
