@@ -220,7 +220,7 @@ class GltfLoader {
     for (uint64_t i = 0; i < reader.count(); ++i) {
       glm::dvec3 position(reader.component(i, 0), reader.component(i, 1), reader.component(i, 2));
       if (!identity) position = glm::dvec3(to_world * glm::dvec4(position, 1.0));  // keeps -0.0 and every bit
-      builder_.addPosition(glm::vec3(position),
+      builder_.addPosition(glm::vec3(position), position,
                            [&] { return fmt::format("{}: accessors[{}], element {}", name_, accessor, i); });
     }
     vertices_.emplace(key, range);

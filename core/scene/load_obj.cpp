@@ -147,12 +147,14 @@ class ObjReader {
     std::string_view line = lines_->line();
     line.remove_prefix(line.find('v') + 1);
     glm::vec3 position;
+    glm::dvec3 full;
     for (int i = 0; i < 3; ++i) {
-      const std::optional<float> coordinate = takeFloat(line);
+      const std::optional<Decimal> coordinate = takeDecimal(line);
       if (!coordinate) throw Error(fmt::format("{}: expected three numbers after \"v\"", place()));
-      position[i] = *coordinate;
+      position[i] = coordinate->single;
+      full[i] = coordinate->full;
     }
-    builder_.addPosition(position, [this] { return place(); });
+    builder_.addPosition(position, full, [this] { return place(); });
   }
 
   void face(std::span<const tinyobj::index_t> indices) {
