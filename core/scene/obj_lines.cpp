@@ -10,10 +10,10 @@ constexpr std::string_view kBlanks = " \t\r";
 /// What some editors put before UTF-8 text.
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
-/// Whether a backslash, and at most blanks behind it, ends the line.
+/// Whether a backslash, and at most blanks behind it, ends the line; not if that belongs to a comment.
 bool isContinued(std::string_view line) {
   const size_t last = line.find_last_not_of(kBlanks);
-  return last != std::string_view::npos && line[last] == '\\';
+  return last != std::string_view::npos && line[last] == '\\' && line.find('#') == std::string_view::npos;
 }
 
 }  // namespace

@@ -67,6 +67,11 @@ TEST(LoadObj, LineEndsContinuationsAndComments) {
   }
 }
 
+TEST(LoadObj, CommentsAreNotContinued) {
+  const Scene scene = loadText("a.obj", kSquare + "f 1 2 3 # C:\\\nf 1 3 4\nf 2 \\\n3 4 # D:\\\nf 1 2 4\n");
+  EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}, {1, 2, 3}, {0, 1, 3}}));
+}
+
 TEST(LoadObj, ByteOrderMarkIsSkipped) {
   const Scene scene = loadText("a.obj", "\xef\xbb\xbf" + kSquare + "f 1 2 3\n");
   ASSERT_EQ(scene.positions.size(), 4u);
