@@ -58,7 +58,7 @@ struct SceneLoadOptions {
 /// glTF: the default scene with its nodes' transforms; skins in the pose of their joints, morph targets with
 /// their default weights; mirrored nodes keep their front (the corners' order is turned). Materials count,
 /// textures are not touched. Files that the scene names are read only from its own folder and those below.
-/// Throws Error with file and place. The largest files: 20 million triangles take about 1.3 GiB in all as
+/// Throws Error with file and place. The largest files: 20 million triangles take about 1.7 GiB in all as
 /// OBJ, half of it as GLB or PLY, and a sixth of OBJ's time.
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
