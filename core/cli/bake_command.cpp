@@ -51,8 +51,7 @@ BakeReport startReport(const BakeOptions& options, const Scene& scene, const Bak
   report.params = options.params;
   report.planned_cells = bake.head().planned.size();
   report.resumed_cells = bake.resumed();
-  const std::string warning = materialWarning(report.scene);
-  if (!warning.empty()) say("warning: " + warning);
+  for (const std::string& warning : sceneWarnings(report.scene)) say("warning: " + warning);
   return report;
 }
 

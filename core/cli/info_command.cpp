@@ -51,9 +51,11 @@ void showScene(const std::filesystem::path& file, bool repair) {
       fmt::format("{} triangles without area (kept, cannot be seen)", scene.degenerate_triangles));
   if (repair) row("repaired", fmt::format("{} triangles dropped", scene.repaired_triangles));
   if (scene.alpha_triangles != 0) row("alpha", fmt::format("{} triangles", scene.alpha_triangles));
+  if (scene.glass_triangles != 0) row("glass", fmt::format("{} triangles", scene.glass_triangles));
   if (scene.single_sided_triangles != 0) {
     row("single-sided", fmt::format("{} triangles", scene.single_sided_triangles));
   }
+  for (const std::string& warning : scene.warnings) row("warning", warning);
   row("hash", hashText(hashScene(scene)));
   row("objects", std::to_string(scene.objects.size()));
   for (size_t i = 0; i < std::min(scene.objects.size(), kListedObjects); ++i) {

@@ -113,8 +113,7 @@ std::vector<ReportFact> sceneFacts(const BakeReport& report) {
                                    {"objects", std::to_string(scene.objects)},
                                    {"hash of the scene", hashText(scene.hash)},
                                    {"hash of all sets", hashText(hashResult(report.cells))}};
-  const std::string warning = materialWarning(scene);
-  if (!warning.empty()) facts.push_back({"note", warning});
+  for (const std::string& warning : sceneWarnings(scene)) facts.push_back({"note", warning});
   return facts;
 }
 

@@ -46,7 +46,10 @@ SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t has
           scene.degenerate_triangles,
           scene.repaired_triangles,
           scene.alpha_triangles,
-          scene.single_sided_triangles};
+          scene.glass_triangles,
+          scene.single_sided_triangles,
+          scene.hidden_nodes,
+          scene.warnings};
 }
 
 std::string reportJson(const BakeReport& report) {
@@ -78,14 +81,17 @@ std::string reportJson(const BakeReport& report) {
   return jsonText(json);
 }
 
-std::string materialWarning(const SceneSummary& scene) {
-  std::string what;
-  if (scene.alpha != 0) what = fmt::format("{} triangles with alpha are traced as opaque", scene.alpha);
+std::vector<std::string> sceneWarnings(const SceneSummary& scene) {
+  std::string materials;
+  const auto add = [&](const std::string& what) { materials += (materials.empty() ? "" : "; ") + what; };
+  if (scene.alpha != 0) add(fmt::format("{} triangles with alpha are traced as opaque", scene.alpha));
+  if (scene.glass != 0) add(fmt::format("{} triangles of glass are traced as opaque", scene.glass));
   if (scene.single_sided != 0) {
-    what += fmt::format("{}{} single-sided triangles are traced as two-sided", what.empty() ? "" : "; ",
-                        scene.single_sided);
+    add(fmt::format("{} single-sided triangles are traced as two-sided", scene.single_sided));
   }
-  return what;
+  std::vector<std::string> warnings = scene.warnings;
+  if (!materials.empty()) warnings.insert(warnings.begin(), materials);
+  return warnings;
 }
 
 uint64_t peakProcessBytes() {

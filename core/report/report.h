@@ -27,7 +27,8 @@ struct SceneSummary {
   std::string name;
   uint64_t hash = 0;
   uint64_t triangles = 0, vertices = 0, objects = 0;
-  uint64_t degenerate = 0, repaired = 0, alpha = 0, single_sided = 0;
+  uint64_t degenerate = 0, repaired = 0, alpha = 0, glass = 0, single_sided = 0, hidden_nodes = 0;
+  std::vector<std::string> warnings;  ///< of loading (Scene)
 };
 SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t hash);
 
@@ -51,9 +52,10 @@ struct BakeReport {
 /// The JSON text, keys as docs/report.md says.
 std::string reportJson(const BakeReport& report);
 
-/// One line if the scene has triangles that are traced as something simpler than the file says (alpha as
-/// opaque, single-sided as two-sided); empty if it has none.
-std::string materialWarning(const SceneSummary& scene);
+/// A line each for what is traced as something simpler than the file says (alpha and glass as opaque,
+/// single-sided as two-sided), for nodes left out, and for each warning of loading; empty if there is
+/// nothing.
+std::vector<std::string> sceneWarnings(const SceneSummary& scene);
 
 /// Most memory that this process has held, in bytes (VmHWM).
 uint64_t peakProcessBytes();

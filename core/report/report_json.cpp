@@ -13,7 +13,10 @@ Json toJson(const SceneSummary& scene) {
           {"degenerate_triangles", scene.degenerate},
           {"repaired_triangles", scene.repaired},
           {"alpha_triangles", scene.alpha},
-          {"single_sided_triangles", scene.single_sided}};
+          {"glass_triangles", scene.glass},
+          {"single_sided_triangles", scene.single_sided},
+          {"hidden_nodes", scene.hidden_nodes},
+          {"warnings", scene.warnings}};
 }
 
 Json toJson(const std::optional<DeviceInfo>& device) {

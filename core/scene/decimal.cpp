@@ -1,8 +1,10 @@
 #include "core/scene/decimal.h"
 
+#include <bit>
+#include <cfloat>
 #include <charconv>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 
 namespace sightline {
 namespace {
@@ -11,31 +13,42 @@ bool isBlank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
 }
 
-/// Sign and magnitude of a number beyond float: std::from_chars does not tell which end was passed.
-float outOfRange(std::string_view number) {
-  double value = 0.0;
-  const auto result = std::from_chars(number.data(), number.data() + number.size(), value);
-  const float sign = number[0] == '-' ? -1.0f : 1.0f;
-  if (result.ec == std::errc()) return std::fabs(value) < 1.0 ? sign * 0.0f : sign * HUGE_VALF;
+/// A number beyond double: std::from_chars does not tell which end was passed.
+double outOfRange(std::string_view number) {
+  const double sign = number[0] == '-' ? -1.0 : 1.0;
   const size_t exponent = number.find_first_of("eE");
   const bool small =
       exponent != std::string_view::npos && exponent + 1 < number.size() && number[exponent + 1] == '-';
-  return small ? sign * 0.0f : sign * HUGE_VALF;
+  return small ? sign * 0.0 : sign * HUGE_VAL;
+}
+
+/// Whether rounding the double to float may give another number than rounding the text itself: it lies in the
+/// middle between two floats, where the digits that the double lost decide, or below the normal floats, where
+/// the middle is elsewhere.
+bool needsText(double value) {
+  constexpr uint64_t kBelowFloat = (1ull << 29) - 1;  // bits of a double that a float has not
+  constexpr uint64_t kMiddle = 1ull << 28;
+  return (std::bit_cast<uint64_t>(value) & kBelowFloat) == kMiddle ||
+         (value != 0.0 && std::fabs(value) < double(FLT_MIN));
 }
 
 }  // namespace
 
-std::optional<float> takeFloat(std::string_view& text) {
+std::optional<Decimal> takeDecimal(std::string_view& text) {
   size_t begin = 0;
   while (begin < text.size() && isBlank(text[begin])) ++begin;
   if (begin + 1 < text.size() && text[begin] == '+' && text[begin + 1] != '-') ++begin;
   const char* first = text.data() + begin;
   const char* last = text.data() + text.size();
-  float value = 0.0f;
-  const auto result = std::from_chars(first, last, value);
+  Decimal value;
+  const auto result = std::from_chars(first, last, value.full);
   if (result.ec == std::errc::invalid_argument) return std::nullopt;
   if (result.ptr != last && !isBlank(*result.ptr)) return std::nullopt;
-  if (result.ec == std::errc::result_out_of_range) value = outOfRange({first, size_t(result.ptr - first)});
+  if (result.ec == std::errc::result_out_of_range) {
+    value.full = outOfRange({first, size_t(result.ptr - first)});
+  }
+  value.single = float(value.full);
+  if (needsText(value.full)) std::from_chars(first, last, value.single);  // unchanged if out of range
   text.remove_prefix(size_t(result.ptr - text.data()));
   return value;
 }

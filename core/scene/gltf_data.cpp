@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/scene/base64.h"
+#include "core/scene/beside.h"
 #include "core/scene/file_io.h"
 
 namespace sightline {
@@ -60,8 +61,13 @@ std::vector<uint8_t> readBesides(const std::string& uri, const std::filesystem::
   const std::string name = percentDecoded(uri, place);
   if (name.empty() || name.find('\0') != std::string::npos)
     throw Error(fmt::format("{}: bad file name", place));
+  const auto beside = besideScene(file, name);
+  if (!beside) {
+    throw Error(fmt::format(
+        "{}: lies outside of the scene's folder, where nothing is read; put it beside the scene", place));
+  }
   try {
-    const FileBytes bytes = readFile(file.parent_path() / name);
+    const FileBytes bytes = readFile(*beside);
     const std::span<const uint8_t> data = asBytes(bytes.view());
     return {data.begin(), data.end()};
   } catch (const Error& error) {

@@ -32,11 +32,19 @@ void checkRequirements(const JsonObject& document) {
                   fmt::format("\"{}\" is not supported, only glTF 2", version.substr(0, 20)));
   }
   for (const std::string& extension : document.texts("extensionsRequired")) {
-    if (extension == "EXT_meshopt_compression" || extension == "KHR_mesh_quantization") continue;
-    if (leavesGeometry(extension)) continue;
+    if (extension == "EXT_meshopt_compression" || extension == "KHR_mesh_quantization" ||
+        extension == "KHR_node_visibility" || leavesGeometry(extension)) {
+      continue;
+    }
     document.fail("extensionsRequired", fmt::format("{} is not supported; convert the file without it",
                                                     nlohmann::json(extension).dump()));
   }
+}
+
+/// An object's extension of that name.
+std::optional<JsonObject> extensionOf(const JsonObject& object, const char* name) {
+  const auto extensions = object.object("extensions");
+  return extensions ? extensions->object(name) : std::nullopt;
 }
 
 GltfBuffer readBuffer(const JsonObject& object) {
@@ -82,8 +90,7 @@ GltfBufferView readView(const JsonObject& object, size_t buffers) {
   view.byte_length = object.requiredNumber("byteLength");
   view.byte_stride = object.number("byteStride").value_or(0);
   if (view.byte_stride > 252) object.fail("byteStride", fmt::format("{} is more than 252", view.byte_stride));
-  const auto extensions = object.object("extensions");
-  const auto compression = extensions ? extensions->object("EXT_meshopt_compression") : std::nullopt;
+  const auto compression = extensionOf(object, "EXT_meshopt_compression");
   if (compression) view.compression = readCompression(*compression, buffers);
   return view;
 }
@@ -135,9 +142,23 @@ std::vector<GltfMaterial> readMaterials(const JsonObject& document) {
   std::vector<GltfMaterial> materials;
   for (const JsonObject& object : document.objects("materials")) {
     const std::string mode = object.text("alphaMode").value_or("OPAQUE");
-    materials.push_back({mode == "MASK" || mode == "BLEND", object.boolean("doubleSided", false)});
+    const auto transmission = extensionOf(object, "KHR_materials_transmission");
+    // A texture only takes some of the factor away, which is 0 unless the file says otherwise.
+    const bool glass = transmission && transmission->real("transmissionFactor").value_or(0.0) > 0.0;
+    materials.push_back({mode == "MASK" || mode == "BLEND", glass, object.boolean("doubleSided", false)});
   }
   return materials;
+}
+
+/// JOINTS_n and WEIGHTS_n for n = 0, 1, ...
+void readInfluences(const JsonObject& attributes, size_t accessors, GltfPrimitive& primitive) {
+  for (size_t set = 0;; ++set) {
+    const std::string joints = fmt::format("JOINTS_{}", set);
+    const std::string weights = fmt::format("WEIGHTS_{}", set);
+    if (!attributes.has(joints.c_str()) && !attributes.has(weights.c_str())) return;
+    primitive.joints.push_back(attributes.requiredIndex(joints.c_str(), accessors));
+    primitive.weights.push_back(attributes.requiredIndex(weights.c_str(), accessors));
+  }
 }
 
 GltfPrimitive readPrimitive(const JsonObject& object, size_t accessors,
@@ -150,11 +171,27 @@ GltfPrimitive readPrimitive(const JsonObject& object, size_t accessors,
   if (primitive.mode > 6) object.fail("mode", "expected 0 to 6");
   const auto material = object.index("material", materials.size());
   if (material) primitive.material = materials[*material];
+  for (const JsonObject& target : object.objects("targets")) {
+    primitive.targets.push_back(target.index("POSITION", accessors));
+  }
+  readInfluences(attributes, accessors, primitive);
   const auto extensions = object.object("extensions");
   if (extensions && extensions->has("KHR_draco_mesh_compression")) {
     object.fail("KHR_draco_mesh_compression is not supported; convert the file without it");
   }
   return primitive;
+}
+
+/// A weight for each morph target; empty if the key is missing.
+std::optional<std::vector<double>> readWeights(const JsonObject& object, const GltfMesh& mesh) {
+  std::optional<std::vector<double>> weights = object.numbers("weights");
+  if (!weights) return weights;
+  for (const GltfPrimitive& primitive : mesh.primitives) {
+    if (primitive.targets.empty() || primitive.targets.size() == weights->size()) continue;
+    object.fail("weights",
+                fmt::format("{} numbers for {} morph targets", weights->size(), primitive.targets.size()));
+  }
+  return weights;
 }
 
 GltfMesh readMesh(const JsonObject& object, size_t accessors, const std::vector<GltfMaterial>& materials) {
@@ -163,7 +200,16 @@ GltfMesh readMesh(const JsonObject& object, size_t accessors, const std::vector<
   for (const JsonObject& primitive : object.objects("primitives")) {
     mesh.primitives.push_back(readPrimitive(primitive, accessors, materials));
   }
+  mesh.weights = readWeights(object, mesh).value_or(std::vector<double>());
   return mesh;
+}
+
+GltfSkin readSkin(const JsonObject& object, size_t accessors, size_t nodes) {
+  GltfSkin skin;
+  skin.joints = object.indices("joints", nodes);
+  if (skin.joints.empty()) object.fail("joints", "expected at least one");
+  skin.inverse_bind = object.index("inverseBindMatrices", accessors);
+  return skin;
 }
 
 /// A unit quaternion's matrix; one that is not quite unit is scaled to it.
@@ -204,10 +250,14 @@ glm::dmat4 readTransform(const JsonObject& object) {
   return result;
 }
 
-GltfNode readNode(const JsonObject& object, size_t meshes, size_t nodes) {
+GltfNode readNode(const JsonObject& object, const GltfDocument& document, size_t nodes) {
   GltfNode node;
   node.name = object.text("name").value_or("");
-  node.mesh = object.index("mesh", meshes);
+  node.mesh = object.index("mesh", document.meshes.size());
+  node.skin = object.index("skin", document.skins.size());
+  if (node.mesh) node.weights = readWeights(object, document.meshes[*node.mesh]);
+  const auto visibility = extensionOf(object, "KHR_node_visibility");
+  node.visible = !visibility || visibility->boolean("visible", true);
   node.children = object.indices("children", nodes);
   node.local = readTransform(object);
   const auto extensions = object.object("extensions");
@@ -250,8 +300,11 @@ GltfDocument readGltfDocument(const nlohmann::json& json, const std::string& fil
     result.meshes.push_back(readMesh(object, result.accessors.size(), materials));
   }
   const std::vector<JsonObject> nodes = document.objects("nodes");
+  for (const JsonObject& object : document.objects("skins")) {
+    result.skins.push_back(readSkin(object, result.accessors.size(), nodes.size()));
+  }
   for (const JsonObject& object : nodes) {
-    result.nodes.push_back(readNode(object, result.meshes.size(), nodes.size()));
+    result.nodes.push_back(readNode(object, result, nodes.size()));
   }
   result.roots = readRoots(document, result.nodes);
   return result;

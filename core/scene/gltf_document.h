@@ -9,7 +9,7 @@
 namespace sightline {
 
 // What geometry needs of a glTF 2.0 document, with defaults filled in and every index in range. Names follow
-// the format's own. Textures, animations, skins, cameras and lights are not looked at.
+// the format's own. Textures, animations, cameras and lights are not looked at.
 
 struct GltfBuffer {
   std::optional<std::string> uri;  ///< without: the GLB's chunk, or a place holder for compressed views
@@ -68,6 +68,7 @@ struct GltfAccessor {
 
 struct GltfMaterial {
   bool alpha = false;  ///< alphaMode MASK or BLEND
+  bool glass = false;  ///< KHR_materials_transmission lets light through
   bool double_sided = false;
 };
 
@@ -75,17 +76,28 @@ struct GltfPrimitive {
   std::optional<size_t> positions;  ///< accessor
   std::optional<size_t> indices;    ///< accessor
   GltfMaterial material;
-  uint32_t mode = 4;  ///< 4 triangles, 5 strip, 6 fan; below: points and lines
+  std::vector<std::optional<size_t>> targets;  ///< accessor of each morph target's POSITION
+  std::vector<size_t> joints, weights;         ///< accessors JOINTS_0, ..., WEIGHTS_0, ...: as many of either
+  uint32_t mode = 4;                           ///< 4 triangles, 5 strip, 6 fan; below: points and lines
 };
 
 struct GltfMesh {
   std::string name;
   std::vector<GltfPrimitive> primitives;
+  std::vector<double> weights;  ///< of the morph targets; empty: all 0
+};
+
+struct GltfSkin {
+  std::vector<size_t> joints;          ///< nodes, at least one
+  std::optional<size_t> inverse_bind;  ///< accessor; without: identity
 };
 
 struct GltfNode {
   std::string name;
   std::optional<size_t> mesh;
+  std::optional<size_t> skin;
+  std::optional<std::vector<double>> weights;  ///< in place of the mesh's
+  bool visible = true;                         ///< KHR_node_visibility; holds for the children too
   std::vector<size_t> children;
   glm::dmat4 local{1.0};  ///< to the parent's space
 };
@@ -95,6 +107,7 @@ struct GltfDocument {
   std::vector<GltfBufferView> views;
   std::vector<GltfAccessor> accessors;
   std::vector<GltfMesh> meshes;
+  std::vector<GltfSkin> skins;
   std::vector<GltfNode> nodes;
   std::vector<size_t> roots;  ///< nodes of the default scene; the first scene if none is named; without
                               ///< scenes every node that is no other's child

@@ -75,6 +75,13 @@ size_t JsonObject::requiredIndex(const char* key, size_t size) const {
   return *index(key, size);
 }
 
+std::optional<double> JsonObject::real(const char* key) const {
+  const json* value = find(key);
+  if (value == nullptr) return std::nullopt;
+  if (!value->is_number()) fail(key, "expected a number");
+  return value->get<double>();
+}
+
 std::optional<std::string> JsonObject::text(const char* key) const {
   const json* value = find(key);
   if (value == nullptr) return std::nullopt;
@@ -98,6 +105,11 @@ std::optional<std::vector<double>> JsonObject::numbers(const char* key, size_t s
   }
   if (value->size() != size || result.size() != size) fail(key, fmt::format("expected {} numbers", size));
   return result;
+}
+
+std::optional<std::vector<double>> JsonObject::numbers(const char* key) const {
+  const json* value = list(key);
+  return value == nullptr ? std::nullopt : numbers(key, value->size());
 }
 
 std::vector<size_t> JsonObject::indices(const char* key, size_t size) const {

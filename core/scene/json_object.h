@@ -25,10 +25,14 @@ class JsonObject {
   /// An index into a list of `size` elements.
   std::optional<size_t> index(const char* key, size_t size) const;
   size_t requiredIndex(const char* key, size_t size) const;
+  /// Any number.
+  std::optional<double> real(const char* key) const;
   std::optional<std::string> text(const char* key) const;
   bool boolean(const char* key, bool value_if_missing) const;
   /// Exactly `size` numbers, or nothing if the key is missing.
   std::optional<std::vector<double>> numbers(const char* key, size_t size) const;
+  /// Any count of numbers.
+  std::optional<std::vector<double>> numbers(const char* key) const;
   std::vector<size_t> indices(const char* key, size_t size) const;
   std::optional<JsonObject> object(const char* key) const;
   JsonObject requiredObject(const char* key) const;

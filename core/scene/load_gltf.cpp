@@ -4,12 +4,13 @@
 
 #include <array>
 #include <cstring>
-#include <map>
 #include <set>
 
 #include "core/error.h"
 #include "core/scene/gltf_data.h"
 #include "core/scene/gltf_document.h"
+#include "core/scene/gltf_tree.h"
+#include "core/scene/gltf_vertices.h"
 #include "core/scene/json_text.h"
 #include "core/scene/loaders.h"
 #include "core/scene/scene_builder.h"
@@ -71,73 +72,28 @@ Glb splitGlb(std::string_view bytes, const std::string& name) {
   return glb;
 }
 
-/// A mesh with its place in the world.
-struct Instance {
-  size_t node = 0;
-  size_t mesh = 0;
-  glm::dmat4 to_world{1.0};
-};
-
-/// The scene's meshes, parents before children. Each node may be reached once only.
-std::vector<Instance> listInstances(const GltfDocument& document, const std::string& file) {
-  struct Visit {
-    size_t node;
-    glm::dmat4 parent;
-  };
-  std::vector<Instance> instances;
-  std::vector<bool> seen(document.nodes.size(), false);
-  std::vector<Visit> stack;
-  const auto push = [&](const std::vector<size_t>& nodes, const glm::dmat4& parent) {
-    for (size_t i = nodes.size(); i-- > 0;) stack.push_back({nodes[i], parent});
-  };
-  push(document.roots, glm::dmat4(1.0));
-  while (!stack.empty()) {
-    const auto [index, parent] = stack.back();
-    stack.pop_back();
-    if (seen[index]) {
-      throw Error(fmt::format("{}: nodes[{}]: occurs twice in the scene's tree", file, index));
-    }
-    seen[index] = true;
-    const GltfNode& node = document.nodes[index];
-    const glm::dmat4 to_world = parent * node.local;
-    if (node.mesh) instances.push_back({index, *node.mesh, to_world});
-    push(node.children, to_world);
-  }
-  return instances;
-}
-
 class GltfLoader {
  public:
   GltfLoader(const GltfDocument& document, GltfData& data, const std::string& name,
              const SceneLoadOptions& options)
-      : document_(document), data_(data), name_(name), builder_(options) {}
+      : document_(document),
+        data_(data),
+        name_(name),
+        builder_(options),
+        tree_(readTree(document, name)),
+        vertices_(document, tree_, data, name, builder_) {}
 
   Scene load() {
-    const std::vector<Instance> instances = listInstances(document_, name_);
-    reserve(instances);
-    for (const Instance& instance : instances) {
+    reserve();
+    for (const GltfInstance& instance : tree_.instances) {
       const GltfMesh& mesh = document_.meshes[instance.mesh];
       for (size_t i = 0; i < mesh.primitives.size(); ++i) addPrimitive(instance, i);
     }
+    warn();
     return builder_.finish(name_);
   }
 
  private:
-  /// Vertices are shared by the primitives that name the same accessor in the same place.
-  struct VertexKey {
-    size_t accessor;
-    std::array<double, 16> to_world;
-    bool operator<(const VertexKey& other) const {
-      return accessor != other.accessor ? accessor < other.accessor : to_world < other.to_world;
-    }
-  };
-
-  static VertexKey keyOf(size_t accessor, const glm::dmat4& to_world) {
-    VertexKey key{accessor, {}};
-    for (int i = 0; i < 16; ++i) key.to_world[size_t(i)] = to_world[i / 4][i % 4] + 0.0;
-    return key;
-  }
-
   static bool hasTriangles(const GltfPrimitive& primitive) {
     return primitive.mode >= 4 && primitive.positions;
   }
@@ -153,17 +109,17 @@ class GltfLoader {
 
   /// Makes room for everything at once, and refuses what this machine could never hold: a small file may
   /// place a mesh any number of times.
-  void reserve(const std::vector<Instance>& instances) {
+  void reserve() {
     uint64_t positions = 0;
     uint64_t triangles = 0;
-    std::set<VertexKey> seen;
+    std::set<GltfVertexSource> sources;
     std::set<size_t> index_accessors;
-    for (const Instance& instance : instances) {
+    for (const GltfInstance& instance : tree_.instances) {
       for (const GltfPrimitive& primitive : document_.meshes[instance.mesh].primitives) {
         if (!hasTriangles(primitive)) continue;
         triangles += triangleCount(primitive, elementCount(primitive));
         if (primitive.indices) index_accessors.insert(*primitive.indices);
-        if (seen.insert(keyOf(*primitive.positions, instance.to_world)).second) {
+        if (sources.insert(vertices_.source(instance, primitive)).second) {
           positions += document_.accessors[*primitive.positions].count;
         }
         if (positions > kMaxElements || triangles > kMaxElements) {
@@ -177,22 +133,9 @@ class GltfLoader {
       throw Error(fmt::format("{}: {} vertices and {} triangles need more memory than this machine has",
                               name_, positions, triangles));
     }
-    for (const VertexKey& key : seen) checkPositions(key.accessor);
+    for (const GltfVertexSource& source : sources) vertices_.check(source);
     for (const size_t accessor : index_accessors) checkIndices(accessor);
     builder_.reserve(positions, triangles);
-  }
-
-  /// Sees, before room is made for it, that the data is there. (Sparse values alone, over zeros that no view
-  /// holds, are refused too: they make no mesh, and would let a small file claim any count.)
-  void checkPositions(size_t accessor) {
-    const GltfAccessor& positions = document_.accessors[accessor];
-    if (positions.width != 3) {
-      throw Error(fmt::format("{}: accessors[{}].type: positions need VEC3", name_, accessor));
-    }
-    if (!positions.view) {
-      throw Error(fmt::format("{}: accessors[{}]: positions without a bufferView", name_, accessor));
-    }
-    GltfReader(document_, data_, accessor, name_);
   }
 
   void checkIndices(size_t accessor) {
@@ -210,28 +153,12 @@ class GltfLoader {
     GltfReader(document_, data_, accessor, name_);
   }
 
-  VertexRange addVertices(size_t accessor, const glm::dmat4& to_world) {
-    const VertexKey key = keyOf(accessor, to_world);
-    const auto found = vertices_.find(key);
-    if (found != vertices_.end()) return found->second;
-    const bool identity = to_world == glm::dmat4(1.0);
-    GltfReader reader(document_, data_, accessor, name_);
-    const VertexRange range{int64_t(builder_.positionCount()), int64_t(reader.count()), 0};
-    for (uint64_t i = 0; i < reader.count(); ++i) {
-      glm::dvec3 position(reader.component(i, 0), reader.component(i, 1), reader.component(i, 2));
-      if (!identity) position = glm::dvec3(to_world * glm::dvec4(position, 1.0));  // keeps -0.0 and every bit
-      builder_.addPosition(glm::vec3(position),
-                           [&] { return fmt::format("{}: accessors[{}], element {}", name_, accessor, i); });
-    }
-    vertices_.emplace(key, range);
-    return range;
-  }
-
-  void addPrimitive(const Instance& instance, size_t index) {
+  void addPrimitive(const GltfInstance& instance, size_t index) {
     const GltfPrimitive& primitive = document_.meshes[instance.mesh].primitives[index];
     if (!hasTriangles(primitive)) return;
     beginObject(instance, index);
-    const VertexRange vertices = addVertices(*primitive.positions, instance.to_world);
+    const GltfVertexRun& vertices = vertices_.add(vertices_.source(instance, primitive));
+    if (document_.nodes[instance.node].skin && primitive.joints.empty()) ++unbound_;
     const uint64_t before = builder_.triangleCount();
     const uint64_t elements = elementCount(primitive);
     const std::string place = fmt::format("{}: meshes[{}].primitives[{}]", name_, instance.mesh, index);
@@ -249,10 +176,11 @@ class GltfLoader {
     }
     const uint64_t added = builder_.triangleCount() - before;
     if (primitive.material.alpha) builder_.countAlpha(added);
+    if (primitive.material.glass && !primitive.material.alpha) builder_.countGlass(added);
     if (!primitive.material.double_sided) builder_.countSingleSided(added);
   }
 
-  void addIndexed(const GltfPrimitive& primitive, const VertexRange& vertices, const std::string& place) {
+  void addIndexed(const GltfPrimitive& primitive, const GltfVertexRun& vertices, const std::string& place) {
     const size_t index = *primitive.indices;
     GltfReader reader(document_, data_, index, name_);
     const std::string where = fmt::format("{}, indices in accessors[{}]", place, index);
@@ -260,20 +188,25 @@ class GltfLoader {
                  [&](uint64_t i) { return reader.index(i); });
   }
 
-  /// Calls corner(i) for i = 0 .. elements - 1 once each, in order.
+  /// Calls corner(i) for i = 0 .. elements - 1 once each, in order. In a mirrored place two corners change
+  /// places, so that the front stays the front.
   template <typename Corner>
-  void addTriangles(uint32_t mode, uint64_t elements, const VertexRange& vertices, const std::string& where,
+  void addTriangles(uint32_t mode, uint64_t elements, const GltfVertexRun& vertices, const std::string& where,
                     const Corner& corner) {
     const uint64_t count = mode == 4 ? elements / 3 : (elements < 3 ? 0 : elements - 2);
     const auto next = [&](uint64_t i) { return int64_t(corner(i)); };
     uint64_t triangle = 0;
     const SceneBuilder::Place place = [&] { return fmt::format("{}, triangle {}", where, triangle); };
+    const auto add = [&](int64_t a, int64_t b, int64_t c) {
+      if (vertices.isMirrored(a)) std::swap(b, c);
+      builder_.addPolygon(std::array{a, b, c}, vertices.range, place);
+    };
     if (mode == 4) {
       for (; triangle < count; ++triangle) {
         const int64_t a = next(3 * triangle);
         const int64_t b = next(3 * triangle + 1);
         const int64_t c = next(3 * triangle + 2);
-        builder_.addPolygon(std::array{a, b, c}, vertices, place);
+        add(a, b, c);
       }
       return;
     }
@@ -284,18 +217,18 @@ class GltfLoader {
     for (; triangle < count; ++triangle) {
       const int64_t newest = next(triangle + 2);
       if (mode == 6) {
-        builder_.addPolygon(std::array{last, newest, first}, vertices, place);
+        add(last, newest, first);
       } else if (triangle % 2 == 0) {
-        builder_.addPolygon(std::array{previous, last, newest}, vertices, place);
+        add(previous, last, newest);
       } else {
-        builder_.addPolygon(std::array{previous, newest, last}, vertices, place);
+        add(previous, newest, last);
       }
       previous = last;
       last = newest;
     }
   }
 
-  void beginObject(const Instance& instance, size_t primitive) {
+  void beginObject(const GltfInstance& instance, size_t primitive) {
     const GltfMesh& mesh = document_.meshes[instance.mesh];
     std::string name = cleanName(document_.nodes[instance.node].name);
     const std::string mesh_name = cleanName(mesh.name);
@@ -305,11 +238,29 @@ class GltfLoader {
     builder_.beginObject(name, name);
   }
 
+  void warn() {
+    builder_.countHiddenNodes(tree_.hidden_nodes);
+    if (tree_.hidden_nodes != 0) {
+      builder_.warn(fmt::format("invisible nodes (KHR_node_visibility), left out with all below them: {}",
+                                tree_.hidden_nodes));
+    }
+    if (unbound_ != 0) {
+      builder_.warn(fmt::format(
+          "primitives of skinned nodes without JOINTS_0 and WEIGHTS_0, left as they are: {}", unbound_));
+    }
+    if (vertices_.unweighted() != 0) {
+      builder_.warn(fmt::format("skinned vertices whose weights are all 0, placed by their first joint: {}",
+                                vertices_.unweighted()));
+    }
+  }
+
   const GltfDocument& document_;
   GltfData& data_;
   const std::string& name_;
   SceneBuilder builder_;
-  std::map<VertexKey, VertexRange> vertices_;
+  GltfTree tree_;
+  GltfVertices vertices_;
+  uint64_t unbound_ = 0;  ///< primitives of skinned nodes without joints
 };
 
 Scene loadDocument(std::string_view json, std::string_view bin, const std::filesystem::path& file,

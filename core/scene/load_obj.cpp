@@ -1,97 +1,79 @@
-// OBJ through tinyobjloader's callbacks. It reads lines, keywords and index triples; we give it the text a
-// line at a time, so that a callback knows its line (for messages), and read the coordinates from that line
-// ourselves: the library's own conversion is not correctly rounded, and takes "nan" or a missing coordinate
-// for 0.
+// OBJ, after Wavefront's Advanced Visualizer manual, appendix B1. Read here rather than by a library:
+// tinyobjloader, which Debian has, cuts numbers short without a word ("1,001" is 1 to it, "nan" 0), does not
+// round coordinates correctly, and skips every statement that it does not know.
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
-#include <cstring>
-#include <istream>
-#include <sstream>
-#include <streambuf>
+#include <map>
+#include <optional>
+#include <set>
 #include <vector>
 
 #include "core/error.h"
+#include "core/scene/beside.h"
 #include "core/scene/decimal.h"
 #include "core/scene/loaders.h"
+#include "core/scene/mtl_file.h"
+#include "core/scene/obj_lines.h"
 #include "core/scene/scene_builder.h"
 
 namespace sightline {
 namespace {
 
-/// What some editors put before UTF-8 text.
-constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+/// Stands for numbers beyond 64 bits, and for what is no number.
+constexpr int64_t kBeyondAny = 1ll << 62;
 
-/// Serves a text line by line. Makes every line end a '\n', and in lines of vertices and faces joins those
-/// continued by a backslash and blanks out comments.
-class LineBuffer : public std::streambuf {
- public:
-  explicit LineBuffer(const FileBytes& bytes)
-      : begin_(bytes.data.get() + (bytes.view().starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0)),
-        end_(bytes.data.get() + bytes.size),
-        line_(begin_),
-        next_(begin_) {}
+/// Takes a whole number, with or without a sign, off the text; nothing if none stands there.
+std::optional<int64_t> takeWhole(std::string_view& text) {
+  std::string_view digits = text;
+  if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1);
+  int64_t number = 0;
+  const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (result.ec == std::errc::invalid_argument) return std::nullopt;
+  text = digits.substr(size_t(result.ptr - digits.data()));
+  return result.ec == std::errc::result_out_of_range ? kBeyondAny : number;
+}
 
-  /// The line last served, without its end.
-  std::string_view line() const {
-    const size_t size = size_t(next_ - line_);
-    return {line_, size != 0 && line_[size - 1] == '\n' ? size - 1 : size};
+/// The vertex's number in a corner of a face: 7, 7/1, 7//3 or 7/1/3. Nothing if that is not all that stands
+/// there.
+std::optional<int64_t> cornerNumber(std::string_view word) {
+  const std::optional<int64_t> number = takeWhole(word);
+  for (int field = 0; field < 2 && word.starts_with('/'); ++field) {
+    word.remove_prefix(1);
+    takeWhole(word);  // of a texture coordinate, then of a normal; may be missing
   }
-  uint64_t lineNumber() const { return line_number_; }
+  return word.empty() ? number : std::nullopt;
+}
 
- protected:
-  int_type underflow() override {
-    if (next_ == end_) return traits_type::eof();
-    line_number_ += lines_in_line_;
-    lines_in_line_ = 1;
-    line_ = next_;
-    next_ = endOfLine(line_);
-    const size_t blanks =
-        size_t(std::find_if(line_, next_, [](char c) { return c != ' ' && c != '\t'; }) - line_);
-    if (line_ + blanks != next_ && (line_[blanks] == 'v' || line_[blanks] == 'f')) cleanLine();
-    setg(line_, line_, next_);
-    return traits_type::to_int_type(*line_);
+/// Statements that hold surfaces, but no polygons.
+constexpr std::array<std::string_view, 4> kFreeForm = {"surf", "bzp", "bsp", "cdp"};
+
+/// Statements without any surface: points, lines, curves, and what describes how surfaces look or are made
+/// up.
+constexpr std::array<std::string_view, 32> kNoSurface = {
+    "vt",       "vn",       "vp",   "p",      "l",      "s",          "mg",        "bevel",
+    "c_interp", "d_interp", "lod",  "usemap", "maplib", "shadow_obj", "trace_obj", "ctech",
+    "stech",    "cstype",   "deg",  "bmat",   "step",   "curv",       "curv2",     "parm",
+    "trim",     "hole",     "scrv", "sp",     "end",    "con",        "cdc",       "res"};
+
+template <size_t n>
+bool contains(const std::array<std::string_view, n>& words, std::string_view word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+/// How often something occurs that is not read, and where first.
+struct Unread {
+  uint64_t count = 0;
+  uint64_t first_line = 0;
+  std::string first;
+
+  void add(std::string_view what, uint64_t line) {
+    if (count++ != 0) return;
+    first = cleanName(what.substr(0, 20));
+    first_line = line;
   }
-
- private:
-  char* endOfLine(char* from) const {
-    auto* newline = static_cast<char*>(std::memchr(from, '\n', size_t(end_ - from)));
-    char* stop = newline == nullptr ? end_ : newline + 1;
-    auto* carriage = static_cast<char*>(std::memchr(from, '\r', size_t(stop - from)));
-    if (carriage == nullptr) return stop;
-    if (carriage + 1 == newline) {
-      *carriage = ' ';
-      return stop;
-    }
-    *carriage = '\n';
-    return carriage + 1;
-  }
-
-  void cleanLine() {
-    while (next_ != end_) {
-      char* last = next_ - 1;  // the '\n'; before it blanks, then perhaps the backslash
-      char* mark = last;
-      while (mark != line_ && (mark[-1] == ' ' || mark[-1] == '\t')) --mark;
-      if (mark == line_ || mark[-1] != '\\') break;
-      mark[-1] = ' ';
-      *last = ' ';
-      next_ = endOfLine(next_);
-      ++lines_in_line_;
-    }
-    char* comment = std::find(line_, next_, '#');
-    for (; comment != next_; ++comment) {
-      if (*comment != '\n') *comment = ' ';
-    }
-  }
-
-  char* begin_;
-  char* end_;
-  char* line_;  ///< start of the line last served
-  char* next_;  ///< its end
-  uint64_t line_number_ = 0;
-  uint64_t lines_in_line_ = 1;  ///< how many of the file's lines it joins
 };
 
 /// Thrown to start again: a face uses a vertex that stands further down.
@@ -99,8 +81,8 @@ struct ForwardReference {};
 
 class ObjReader {
  public:
-  ObjReader(const FileBytes& bytes, const std::string& name, const SceneLoadOptions& options)
-      : bytes_(bytes), name_(name), options_(options), builder_(options) {}
+  ObjReader(std::string_view text, const std::filesystem::path& file, const SceneLoadOptions& options)
+      : text_(text), file_(file), name_(file.string()), options_(options), builder_(options) {}
 
   Scene read() {
     try {
@@ -111,59 +93,96 @@ class ObjReader {
       all_vertices_known_ = true;
       parse(false, true);
     }
+    countGlass();
+    warnOfUnread();
     return builder_.finish(name_);
   }
 
  private:
-  static ObjReader& self(void* data) { return *static_cast<ObjReader*>(data); }
-
   void parse(bool vertices, bool faces) {
-    LineBuffer lines(bytes_);
+    ObjLines lines(text_);
     lines_ = &lines;
     vertices_so_far_ = 0;
     add_vertices_ = vertices;
     object_.clear();
     group_.clear();
+    libraries_.clear();
+    triangles_of_.clear();
+    material_triangles_ = nullptr;
+    free_form_ = unknown_ = {};
     if (faces) builder_.beginObject("", kUnnamed);
-    std::istream stream(&lines);
-    stream.exceptions(std::ios::badbit);  // lets what the stream buffer throws pass
-    tinyobj::callback_t callback;
-    callback.vertex_cb = [](void* data, float, float, float, float) { self(data).vertex(); };
-    if (faces) {
-      callback.index_cb = [](void* data, tinyobj::index_t* indices, int count) {
-        self(data).face({indices, size_t(count)});
-      };
-      callback.object_cb = [](void* data, const char* text) { self(data).object(text); };
-      callback.group_cb = [](void* data, const char** names, int count) { self(data).group(names, count); };
+    while (lines.next()) {
+      std::string_view rest = lines.line();
+      const std::string_view keyword = takeWord(rest);
+      if (keyword == "v") {
+        vertex(rest);
+      } else if (faces && !keyword.empty() && keyword[0] != '#') {
+        statement(keyword, rest);
+      }
     }
-    tinyobj::LoadObjWithCallback(stream, callback, this);
   }
 
-  std::string place() const { return fmt::format("{}:{}", name_, lines_->lineNumber()); }
+  std::string place() const { return fmt::format("{}:{}", name_, lines_->number()); }
 
-  void vertex() {
+  void vertex(std::string_view rest) {
     ++vertices_so_far_;
     if (!add_vertices_) return;
-    std::string_view line = lines_->line();
-    line.remove_prefix(line.find('v') + 1);
     glm::vec3 position;
+    glm::dvec3 full;
     for (int i = 0; i < 3; ++i) {
-      const std::optional<float> coordinate = takeFloat(line);
+      const std::optional<Decimal> coordinate = takeDecimal(rest);
       if (!coordinate) throw Error(fmt::format("{}: expected three numbers after \"v\"", place()));
-      position[i] = *coordinate;
+      position[i] = coordinate->single;
+      full[i] = coordinate->full;
     }
-    builder_.addPosition(position, [this] { return place(); });
+    builder_.addPosition(position, full, [this] { return place(); });
   }
 
-  void face(std::span<const tinyobj::index_t> indices) {
+  /// Any statement but "v".
+  void statement(std::string_view keyword, std::string_view rest) {
+    if (keyword == "f" || keyword == "fo") {  // "fo" is what version 2 of the format called a face
+      face(rest);
+    } else if (keyword == "o") {
+      object_ = cleanName(rest);
+      group_.clear();
+      beginObject();
+    } else if (keyword == "g") {
+      group_.clear();
+      while (const auto word = nextWord(rest)) group_.append(group_.empty() ? "" : " ").append(*word);
+      group_ = cleanName(group_);
+      beginObject();
+    } else if (keyword == "usemtl") {
+      material_triangles_ = &triangles_of_[std::string(trimmed(rest))];
+    } else if (keyword == "mtllib") {
+      libraries_.emplace_back(trimmed(rest));
+    } else if (contains(kFreeForm, keyword)) {
+      free_form_.add(keyword, lines_->number());
+    } else if (!contains(kNoSurface, keyword)) {
+      unknown_.add(keyword, lines_->number());
+    }
+  }
+
+  static std::optional<std::string_view> nextWord(std::string_view& rest) {
+    const std::string_view word = takeWord(rest);
+    return word.empty() ? std::nullopt : std::optional(word);
+  }
+
+  void face(std::string_view rest) {
     corners_.clear();
-    if (hasHugeNumber(lines_->line())) {
-      readHugeCorners();
-    } else {
-      for (const tinyobj::index_t& index : indices) addCorner(index.vertex_index);
+    while (const auto word = nextWord(rest)) {
+      const std::optional<int64_t> number = cornerNumber(*word);
+      if (!number && !builder_.repairs()) {
+        throw Error(
+            fmt::format("{}: expected a vertex number (7, 7/1, 7//3 or 7/1/3) and found \"{}\"; "
+                        "--repair drops the face",
+                        place(), cleanName(word->substr(0, 40))));
+      }
+      addCorner(number.value_or(kBeyondAny));
     }
     const VertexRange vertices{0, int64_t(builder_.positionCount()), 1};
+    const uint64_t before = builder_.triangleCount();
     builder_.addPolygon(corners_, vertices, [this] { return place(); });
+    if (material_triangles_ != nullptr) *material_triangles_ += builder_.triangleCount() - before;
   }
 
   /// `number` as in the file: from 1, or from the last vertex back for negative ones; 0 is bad.
@@ -173,67 +192,85 @@ class ObjReader {
     corners_.push_back(corner);
   }
 
-  /// Reads the face from its line, as the library does, but with numbers of 64 bits.
-  void readHugeCorners() {
-    std::istringstream words(std::string(lines_->line()));
-    std::string word;
-    words >> word;  // the "f"
-    while (words >> word) {
-      int64_t number = 0;
-      const auto result = std::from_chars(word.data(), word.data() + word.size(), number);
-      addCorner(result.ec == std::errc::result_out_of_range ? kBeyondAny : number);
-    }
-  }
-
-  /// Whether a number has ten digits or more: the library would wrap it around.
-  static bool hasHugeNumber(std::string_view line) {
-    int digits = 0;
-    for (const char c : line) {
-      digits = c >= '0' && c <= '9' ? digits + 1 : 0;
-      if (digits >= 10) return true;
-    }
-    return false;
-  }
-
-  void object(std::string_view name) {
-    object_ = cleanName(name);
-    group_.clear();
-    beginObject();
-  }
-
-  void group(const char** names, int count) {
-    group_.clear();
-    for (int i = 0; i < count; ++i) group_.append(i == 0 ? "" : " ").append(names[i]);
-    group_ = cleanName(group_);
-    beginObject();
-  }
-
   void beginObject() {
     const bool both = !object_.empty() && !group_.empty() && object_ != group_;
     builder_.beginObject(both ? object_ + "/" + group_ : (group_.empty() ? object_ : group_), kUnnamed);
   }
 
-  static constexpr int64_t kBeyondAny = 1ll << 62;
+  /// The files that an mtllib statement names: one whose name has blanks, if there is such a file, else a
+  /// word each.
+  std::set<std::string> filesOf(std::string library) const {
+    std::replace(library.begin(), library.end(), '\\', '/');  // as Windows writes it
+    std::error_code ignored;
+    const auto whole = besideScene(file_, library);
+    if (whole && std::filesystem::is_regular_file(*whole, ignored)) return {library};
+    std::set<std::string> files;
+    std::string_view rest = library;
+    while (const auto word = nextWord(rest)) files.emplace(*word);
+    return files;
+  }
+
+  /// Materials are read for the count of see-through triangles alone, so a missing file is no error.
+  void countGlass() {
+    if (triangles_of_.empty()) return;
+    std::set<std::string, std::less<>> see_through;
+    std::vector<std::string> problems;
+    std::set<std::string> names;
+    for (const std::string& library : libraries_) names.merge(filesOf(library));
+    for (const std::string& name : names) {
+      try {
+        const auto file = besideScene(file_, name);
+        if (!file)
+          throw Error(fmt::format("{}: {} lies outside of the scene's folder", name_, cleanName(name)));
+        listSeeThrough(readFile(*file).view(), see_through);
+      } catch (const Error& error) {
+        problems.emplace_back(error.what());
+      }
+    }
+    uint64_t triangles = 0;
+    for (const auto& [name, count] : triangles_of_) triangles += see_through.contains(name) ? count : 0;
+    builder_.countGlass(triangles);
+    if (problems.empty()) return;
+    builder_.warn(fmt::format(
+        "{}; {} materials count as opaque", problems[0],
+        problems.size() == 1 ? "its" : fmt::format("its and {} other files'", problems.size() - 1)));
+  }
+
+  void warnOfUnread() {
+    if (free_form_.count != 0) {
+      builder_.warn(fmt::format("free-form surfaces, not read: {}, the first in line {}; export polygons",
+                                free_form_.count, free_form_.first_line));
+    }
+    if (unknown_.count != 0) {
+      builder_.warn(fmt::format("statements not understood, not read: {}, the first in line {} (\"{}\")",
+                                unknown_.count, unknown_.first_line, unknown_.first));
+    }
+  }
+
   static constexpr const char* kUnnamed = "default";  // the format's own name for it
 
-  const FileBytes& bytes_;
-  const std::string& name_;
+  std::string_view text_;
+  const std::filesystem::path& file_;
+  const std::string name_;
   const SceneLoadOptions& options_;
   SceneBuilder builder_;
-  LineBuffer* lines_ = nullptr;
+  ObjLines* lines_ = nullptr;
   int64_t vertices_so_far_ = 0;
   bool add_vertices_ = true;
   bool all_vertices_known_ = false;
   std::string object_;
   std::string group_;
   std::vector<int64_t> corners_;
+  std::vector<std::string> libraries_;            ///< what mtllib statements say
+  std::map<std::string, uint64_t> triangles_of_;  ///< by material
+  uint64_t* material_triangles_ = nullptr;        ///< the count of the material in use
+  Unread free_form_, unknown_;
 };
 
 }  // namespace
 
 Scene loadObj(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
-  const std::string name = file.string();
-  return ObjReader(bytes, name, options).read();
+  return ObjReader(bytes.view(), file, options).read();
 }
 
 }  // namespace sightline

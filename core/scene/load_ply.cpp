@@ -27,12 +27,14 @@ class NumberReader {
   bool atEnd() const { return isBinary() || rest_.find_first_not_of(kBlanks) == std::string_view::npos; }
   bool isBinary() const { return format_ != PlyFormat::kAscii; }
 
-  /// A value as a float; nothing at the file's end or where no number stands.
-  std::optional<float> real(PlyType type) {
-    if (type == PlyType::kFloat32) return isBinary() ? binary<float, float>() : takeFloat(rest_);
-    if (type == PlyType::kFloat64) return isBinary() ? binary<double, float>() : takeFloat(rest_);
-    const std::optional<int64_t> value = whole(type);
-    return value ? std::optional<float>(float(*value)) : std::nullopt;
+  /// A value of any type; nothing at the file's end or where no number stands.
+  std::optional<Decimal> real(PlyType type) {
+    const bool fraction = type == PlyType::kFloat32 || type == PlyType::kFloat64;
+    if (fraction && !isBinary()) return takeDecimal(rest_);
+    const auto value = type == PlyType::kFloat32   ? binary<float, double>()
+                       : type == PlyType::kFloat64 ? binary<double, double>()
+                                                   : asDouble(whole(type));
+    return value ? std::optional(Decimal{float(*value), *value}) : std::nullopt;
   }
 
   /// A value of a whole type.
@@ -55,6 +57,10 @@ class NumberReader {
   }
 
  private:
+  static std::optional<double> asDouble(std::optional<int64_t> value) {
+    return value ? std::optional(double(*value)) : std::nullopt;
+  }
+
   template <typename Stored, typename Result>
   std::optional<Result> binary() {
     if (rest_.size() < sizeof(Stored)) return std::nullopt;
@@ -112,9 +118,8 @@ class PlyReader {
   std::string place() const { return fmt::format("{}: element {}, row {}", name_, element_->name, row_); }
 
   [[noreturn]] void failAt(const PlyProperty& property) const {
-    throw Error(
-        fmt::format("{}: property {}: {}", place(), property.name,
-                    numbers_.atEnd() ? "the file ends here; is it truncated?" : "expected a number"));
+    throw Error(fmt::format("{}: property {}: {}", place(), property.name,
+                            numbers_.atEnd() ? "the file ends here; is it truncated?" : "expected a number"));
   }
 
   /// How many rows could still come, so that memory follows the file's size and not its claims.
@@ -136,13 +141,16 @@ class PlyReader {
     builder_.reserve(possibleRows(), 0);
     for (row_ = 0; row_ < element_->count; ++row_) {
       glm::vec3 position;
+      glm::dvec3 full;
       for (size_t i = 0; i < element_->properties.size(); ++i) {
-        const float value = skipOrRead(element_->properties[i]);
+        const Decimal value = skipOrRead(element_->properties[i]);
         for (int axis = 0; axis < 3; ++axis) {
-          if (where[axis] == i) position[axis] = value;
+          if (where[axis] != i) continue;
+          position[axis] = value.single;
+          full[axis] = value.full;
         }
       }
-      builder_.addPosition(position, [this] { return place(); });
+      builder_.addPosition(position, full, [this] { return place(); });
     }
   }
 
@@ -211,11 +219,11 @@ class PlyReader {
   }
 
   /// The value of a plain property; reads over a list.
-  float skipOrRead(const PlyProperty& property) {
+  Decimal skipOrRead(const PlyProperty& property) {
     const uint64_t values = property.list_size_type ? readListSize(property) : 1;
-    float last = 0.0f;
+    Decimal last;
     for (uint64_t i = 0; i < values; ++i) {
-      const std::optional<float> value = numbers_.real(property.type);
+      const std::optional<Decimal> value = numbers_.real(property.type);
       if (!value) failAt(property);
       last = *value;
     }

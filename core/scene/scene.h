@@ -32,7 +32,12 @@ struct Scene {
   uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
   uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or vertex
   uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND: traced as opaque
+  uint64_t glass_triangles = 0;         ///< others that one sees through (glTF transmission, OBJ d, Tr or
+                                        ///< map_d): traced as opaque
   uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false: traced as two-sided
+  uint64_t hidden_nodes = 0;            ///< left out by glTF's KHR_node_visibility, with those below them
+  std::vector<std::string> warnings;    ///< a line each: what else of the file is not in the scene, or only
+                                        ///< roughly
 };
 
 /// Coordinates of scenes and view cells reach so far at most, to either side of 0: products of three
@@ -50,9 +55,11 @@ struct SceneLoadOptions {
 };
 
 /// Loads .obj, .gltf, .glb or .ply (by extension, any case). Polygons are triangulated, concave ones too.
-/// glTF: the default scene with its nodes' transforms; materials count, textures are not touched; skins and
-/// morph targets stay at rest. Throws Error with file and place. The largest files: 20 million triangles take
-/// about 1.3 GiB in all as OBJ, half of it as GLB or PLY, and a sixth of OBJ's time.
+/// glTF: the default scene with its nodes' transforms; skins in the pose of their joints, morph targets with
+/// their default weights; mirrored nodes keep their front (the corners' order is turned). Materials count,
+/// textures are not touched. Files that the scene names are read only from its own folder and those below.
+/// Throws Error with file and place. The largest files: 20 million triangles take about 1.7 GiB in all as
+/// OBJ, half of it as GLB or PLY, and a sixth of OBJ's time.
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 /// Writes .obj or .glb (by extension) so that loadScene returns the same positions, triangles and objects,

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/error.h"
+#include "core/scene/precision_warning.h"
 #include "core/scene/triangle_area.h"
 #include "core/scene/triangulate.h"
 
@@ -74,9 +75,14 @@ std::string cleanName(std::string_view name) {
   return result.substr(begin, result.find_last_not_of(' ') - begin + 1);
 }
 
-void SceneBuilder::addPosition(const glm::vec3& position, const Place& place) {
+void SceneBuilder::addPosition(const glm::vec3& position, const glm::dvec3& full, const Place& place) {
   if (scene_.positions.size() >= kMaxElements) throw Error(fmt::format("{}: too many vertices", place()));
   if (isInRange(position)) {
+    const glm::vec3 remainder(full - glm::dvec3(position));
+    if (remainder != glm::vec3(0.0f)) {
+      remainders_.resize(scene_.positions.size(), glm::vec3(0.0f));
+      remainders_.push_back(remainder);
+    }
     scene_.positions.push_back(position);
     return;
   }
@@ -166,7 +172,9 @@ Scene SceneBuilder::finish(const std::string& file) {
       throw Error(fmt::format("{}: no triangle is left; all {} were dropped as bad", file,
                               scene_.repaired_triangles));
     }
-    throw Error(fmt::format("{}: holds no triangles", file));
+    std::string why;
+    for (const std::string& warning : scene_.warnings) why += "; " + warning;
+    throw Error(fmt::format("{}: holds no triangles{}", file, why));
   }
   const Bounds bounds = sceneBounds(scene_);
   const glm::vec3 extent = bounds.high - bounds.low;
@@ -176,6 +184,8 @@ Scene SceneBuilder::finish(const std::string& file) {
                             longest, kSmallestExtent));
   }
   scene_.degenerate_triangles = countDegenerate(scene_);
+  const std::string lost = precisionWarning(scene_, remainders_);
+  if (!lost.empty()) warn(lost);
   return std::move(scene_);
 }
 

@@ -33,8 +33,9 @@ class SceneBuilder {
 
   explicit SceneBuilder(const SceneLoadOptions& options) : repair_(options.repair) {}
 
-  /// Throws Error for a non-finite position, or, to repair, marks the vertex: its triangles are dropped.
-  void addPosition(const glm::vec3& position, const Place& place);
+  /// Adds a vertex; `full` is the position as precise as the file has it. Throws Error for a non-finite
+  /// position, or, to repair, marks the vertex: its triangles are dropped.
+  void addPosition(const glm::vec3& position, const glm::dvec3& full, const Place& place);
   uint64_t positionCount() const { return scene_.positions.size(); }
 
   /// Following triangles belong to an object of that name. An empty or blank name becomes `fallback`.
@@ -48,13 +49,17 @@ class SceneBuilder {
   void countRepaired(uint64_t triangles) { scene_.repaired_triangles += triangles; }
   bool repairs() const { return repair_; }
   void countAlpha(uint64_t triangles) { scene_.alpha_triangles += triangles; }
+  void countGlass(uint64_t triangles) { scene_.glass_triangles += triangles; }
   void countSingleSided(uint64_t triangles) { scene_.single_sided_triangles += triangles; }
+  void countHiddenNodes(uint64_t nodes) { scene_.hidden_nodes += nodes; }
+  void warn(std::string line) { scene_.warnings.push_back(std::move(line)); }
   uint64_t triangleCount() const { return scene_.triangles.size(); }
 
   /// Room for so many more, to avoid copies.
   void reserve(uint64_t positions, uint64_t triangles);
 
-  /// The scene, with the degenerate triangles counted. Throws Error without any triangle.
+  /// The scene, with the degenerate triangles counted and a warning if single precision spoils it. Throws
+  /// Error without any triangle.
   Scene finish(const std::string& file);
 
  private:
@@ -67,7 +72,9 @@ class SceneBuilder {
   Scene scene_;
   SceneObject object_;
   std::vector<uint32_t> bad_vertices_;  ///< ascending; only to repair
-  std::vector<glm::vec3> corners_;      ///< of the polygon in work
+  std::vector<glm::vec3>
+      remainders_;                  ///< what positions lost by rounding; shorter if the others lost nothing
+  std::vector<glm::vec3> corners_;  ///< of the polygon in work
   std::vector<glm::uvec3> cut_;
 };
 

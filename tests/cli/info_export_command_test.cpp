@@ -78,6 +78,28 @@ TEST(InfoCommand, DescribesScenesCellsAndSets) {
   expectSays("info " + files.pvs(), {"quads.obj, 4 triangles", "1 of 1 baked", "spot", "50.00 %", "seed"});
 }
 
+TEST(InfoCommand, AndABakeSayWhatOfASceneIsOtherwise) {
+  const Files files;
+  std::ofstream(files / "m.mtl") << "newmtl pane\nd 0.4\n";
+  std::ofstream(files / "far.obj")
+      << "mtllib m.mtl\nusemtl pane\nv 4649776.1 0 0\nv 4649776.2 0 0\nv 4649776.1 0.1 0\n"
+         "f 1 2 3\nusemtl wall\nv 4649777 0 0\nv 4649777 2 0\nv 4649777 0 2\nf 4 5 6\n";
+  const std::string lost = "of 2 triangles 1 lose their area by that and 0 turn by more than 30 degrees";
+  expectSays("info " + (files / "far.obj"),
+             {"glass            1 triangles", "warning          single precision", lost.c_str()});
+  expectSays("bake " + (files / "far.obj") + " --cells " + files.cells() + " -o " + (files / "far.pvs") +
+                 " --device cpu --n-rand 1000 --validation-rays 1000 --report " + (files / "r.json") +
+                 " --html " + (files / "r.html"),
+             {"warning: 1 triangles of glass are traced as opaque\n",
+              "warning: single precision steps by 0.5", lost.c_str()});
+  const auto scene = nlohmann::json::parse(readText(files / "r.json"))["scene"];
+  EXPECT_EQ(scene["glass_triangles"], 1);
+  EXPECT_EQ(scene["hidden_nodes"], 0);
+  ASSERT_EQ(scene["warnings"].size(), 1u);
+  EXPECT_NE(scene["warnings"][0].get<std::string>().find(lost), std::string::npos);
+  EXPECT_NE(readText(files / "r.html").find(lost), std::string::npos);
+}
+
 TEST(InfoCommand, FailsOnDamagedAndMissingFiles) {
   const Files files;
   expectFails("info " + (files / "none.pvs"), 1, "none.pvs");

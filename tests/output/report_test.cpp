@@ -19,7 +19,7 @@ using nlohmann::json;
 BakeReport exampleReport() {
   BakeReport report;
   report.version = "1.2.3";
-  report.scene = {"room.obj", 0xabcdef, 1000, 700, 3, 1, 2, 4, 5};
+  report.scene = {"room.obj", 0xabcdef, 1000, 700, 3, 1, 2, 4, 6, 5, 7, {"far off"}};
   report.baked_on = "cpu";
   report.device = DeviceInfo{"cpu", "host", "built in", "8-wide", "", 5};
   report.tree = TreeSummary{0.5, 12.5, 9, 10, 20, 1100, 9000};
@@ -103,7 +103,8 @@ TEST(Report, EveryKeyIsDocumentedAndEveryDocumentedKeyIsThere) {
   collectWords("## `sightline bake --report R.json`", documented);
   collectWords("## `sightline export --format json`", documented);
   // Words in backquotes that are no keys: commands and values.
-  for (const char* word : {"--scene", "array", "hash", "converged", "ray limit", "time limit", "target error"}) {
+  for (const char* word :
+       {"--scene", "array", "hash", "converged", "ray limit", "time limit", "target error"}) {
     EXPECT_EQ(documented.count(word), 1u) << word;
     if (std::string(word) != "hash") documented.erase(word);
   }
@@ -116,13 +117,19 @@ TEST(Report, SurvivesNamesThatAreNotUtf8) {
   EXPECT_NO_THROW(json::parse(reportJson(report)));
 }
 
-TEST(Report, WarnsOnceAboutMaterials) {
+TEST(Report, WarnsOfMaterialsInOneLineAndPassesOnWhatLoadingSaid) {
   SceneSummary scene;
-  EXPECT_EQ(materialWarning(scene), "");
+  EXPECT_TRUE(sceneWarnings(scene).empty());
+  scene.warnings = {"far away"};
+  EXPECT_EQ(sceneWarnings(scene), (std::vector<std::string>{"far away"}));
   scene.alpha = 3;
+  scene.glass = 2;
   scene.single_sided = 4;
-  EXPECT_EQ(materialWarning(scene),
-            "3 triangles with alpha are traced as opaque; 4 single-sided triangles are traced as two-sided");
+  EXPECT_EQ(sceneWarnings(scene),
+            (std::vector<std::string>{
+                "3 triangles with alpha are traced as opaque; 2 triangles of glass are traced as "
+                "opaque; 4 single-sided triangles are traced as two-sided",
+                "far away"}));
 }
 
 Scene threeObjects() {

@@ -40,7 +40,7 @@ std::vector<Sample> samples() {
   return {
       {"a.obj",
        "# c\nmtllib m.mtl\nv 0 0 0\nv 1.5e0 0 -0.25 # c\r\nv 1 1 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\no a\ng b c\n"
-       "usemtl m\nf 1/1/1 2//1 3/1\nf -4 -3 \\\n -2 -1\ns off\n"},
+       "usemtl m\nf 1/1/1 2//1 3/1\nf -4 -3 \\\n -2 -1\ns off\nfo 1 2 3\nsurf 0 1 0 1 1 2 3\nend\n"},
       {"a.ply",
        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty double y\nproperty int z\n"
        "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0.5 0\n1 1 0\n-1 1e1 0\n"
@@ -52,6 +52,8 @@ std::vector<Sample> samples() {
       {"t.glb", test::compressedSquare(false).glb()},
       {"i.glb", test::compressedSquare(true).glb()},
       {"r.gltf", test::richFile().gltf()},
+      {"p.glb", test::posedFile().glb()},
+      {"p.gltf", test::posedFile().gltf()},
   };
 }
 
@@ -182,7 +184,7 @@ TEST(FuzzLoad, MutatedGltfDocuments) {
   constexpr uint64_t kSeed = 43;
   constexpr int kRounds = 5000;
   std::mt19937_64 random(kSeed);
-  const test::GltfFile files[] = {test::squareFile<uint16_t>(5123), test::richFile(),
+  const test::GltfFile files[] = {test::squareFile<uint16_t>(5123), test::richFile(), test::posedFile(),
                                   test::compressedSquare(false), test::compressedSquare(true)};
   Loader loader;
   int loaded = 0;
@@ -199,6 +201,28 @@ TEST(FuzzLoad, MutatedGltfDocuments) {
     }
   }
   EXPECT_GT(loaded, 500);
+}
+
+TEST(FuzzLoad, MutatedMaterials) {
+  constexpr uint64_t kSeed = 45;
+  constexpr int kRounds = 2000;
+  const std::string good = "newmtl a\nd -halo 0.5\nTr 0.5\n\nnewmtl b c\nmap_d -s 1 1 1 x.png\nKd 1 0 0\n";
+  std::mt19937_64 random(kSeed);
+  const test::Folder folder;
+  const auto scene = folder.write(
+      "a.obj",
+      "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b c\nf 1 2 3\nusemtl d\nf 1 2 3\n");
+  for (int round = 0; round < kRounds + int(good.size()); ++round) {
+    std::string bytes = good.substr(0, size_t(round) < good.size() ? size_t(round) : good.size());
+    if (round >= int(good.size())) bytes[random() % bytes.size()] = char(random());
+    SCOPED_TRACE("seed " + std::to_string(kSeed) + " round " + std::to_string(round) + " " +
+                 test::encodeBase64(bytes));
+    folder.write("a.mtl", bytes);
+    const Scene loaded = loadScene(scene);
+    ASSERT_EQ(loaded.triangles.size(), 3u);
+    ASSERT_LE(loaded.glass_triangles, 2u);
+    ASSERT_TRUE(bytes.empty() || loaded.warnings.empty());
+  }
 }
 
 TEST(FuzzLoad, MutatedCells) {

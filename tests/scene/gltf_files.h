@@ -187,4 +187,38 @@ inline GltfFile richFile() {
   return file;
 }
 
+/// A square in a pose: skin with joints of its own, a morph target of sparse values alone, default weights,
+/// an invisible node, a mirrored one, glass. For mutations.
+inline GltfFile posedFile() {
+  GltfFile file = squareFile<uint16_t>(5123);
+  const std::vector<uint8_t> joints = {0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0};
+  const std::vector<uint8_t> weights = {128, 127, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 100, 155, 0, 0};
+  const std::vector<float> inverse_bind = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1,
+                                           2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0,  0, 0, 1};
+  json& primitive = file.document["meshes"][0]["primitives"][0];
+  primitive["attributes"]["JOINTS_0"] = file.addAccessor(file.addView(bytesOf(joints)), 5121, 4, "VEC4");
+  primitive["attributes"]["WEIGHTS_0"] = file.addAccessor(file.addView(bytesOf(weights)), 5121, 4, "VEC4");
+  file.document["accessors"].back()["normalized"] = true;
+  const size_t inverse = file.addAccessor(file.addView(bytesOf(inverse_bind)), 5126, 2, "MAT4");
+  const size_t sparse_indices = file.addView(bytesOf(std::vector<uint8_t>{0, 2}));
+  const size_t sparse_values = file.addView(bytesOf(std::vector<float>{0, 0, 1, 0, 0, 2}));
+  const json sparse = {{"count", 2},
+                       {"indices", {{"bufferView", sparse_indices}, {"componentType", 5121}}},
+                       {"values", {{"bufferView", sparse_values}}}};
+  file.document["accessors"].push_back(
+      {{"componentType", 5126}, {"count", 4}, {"type", "VEC3"}, {"sparse", sparse}});
+  primitive["targets"] = {{{"POSITION", file.document["accessors"].size() - 1}}};
+  primitive["material"] = 0;
+  file.document["meshes"][0]["weights"] = {0.5};
+  file.document["materials"] = {
+      {{"extensions", {{"KHR_materials_transmission", {{"transmissionFactor", 0.9}}}}}}};
+  file.document["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", inverse}}};
+  file.document["nodes"] = {{{"mesh", 0}, {"skin", 0}, {"translation", {9, 9, 9}}},
+                            {{"children", {2}}, {"translation", {1, 2, 3}}},
+                            {{"rotation", {0, 0, 1, 0}}},
+                            {{"mesh", 0}, {"scale", {-1, 1, 1}}, {"weights", {2}}},
+                            {{"mesh", 0}, {"extensions", {{"KHR_node_visibility", {{"visible", false}}}}}}};
+  return file;
+}
+
 }  // namespace sightline::test

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
+#include <random>
 
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
@@ -208,9 +209,131 @@ TEST(LoadGltf, TexturesAndOtherThingsAreNotNeeded) {
   GltfFile file = squareFile<uint16_t>(5123);
   file.document["images"] = {{{"uri", "missing.png"}}, {{"bufferView", 99}}, 7};
   file.document["textures"] = "nonsense";
-  file.document["skins"] = {1};
+  file.document["animations"] = {1};
   file.document["extensionsRequired"] = {"KHR_materials_unlit", "KHR_texture_basisu", "EXT_texture_webp"};
   EXPECT_EQ(loadText("a.glb", file.glb()).triangles, kTwo);
+}
+
+TEST(LoadGltf, BuffersOutsideTheFolderAreRefused) {
+  const Folder folder;
+  const GltfFile file = squareFile<uint16_t>(5123);
+  const std::string outside = folder.write("b.bin", file.bin).string();
+  std::filesystem::create_directories(folder / "scene/sub");
+  folder.write("scene/b.bin", file.bin);
+  folder.write("scene/..b.bin", file.bin);
+  const auto load = [&](const std::string& uri) {
+    return loadScene(folder.write("scene/a.gltf", file.gltf(uri)));
+  };
+  std::string encoded;
+  for (const char c : outside) encoded += c == '/' ? "%2f" : std::string(1, c);
+  for (const std::string& uri :
+       {std::string("../b.bin"), std::string("%2E%2e/b.bin"), std::string("..%2fb.bin"),
+        std::string("sub/../../b.bin"), std::string("./../scene/b.bin"), outside, encoded}) {
+    EXPECT_EQ(test::errorOf([&] { load(uri); }),
+              "scene/a.gltf: buffers[0].uri: lies outside of the scene's folder, where nothing is read; put "
+              "it beside "
+              "the scene")
+        << uri;
+  }
+  for (const char* uri : {"b.bin", "./b.bin", "sub/../b.bin", "..b.bin"})
+    EXPECT_EQ(load(uri).triangles, kTwo) << uri;
+}
+
+TEST(LoadGltf, MirroredNodesKeepTheirFront) {
+  // Triangles of every kind of primitive under places of every kind; a front stays one if its normal in the
+  // file, carried along by the inverse transposed matrix, is on the side of its normal in the scene.
+  std::mt19937_64 random(7);
+  const auto number = [&] { return double(random() >> 11) * 0x1p-53 - 0.5; };
+  for (int round = 0; round < 40; ++round) {
+    SCOPED_TRACE(round);
+    GltfFile file;
+    Positions corners;
+    for (int i = 0; i < 6; ++i) corners.emplace_back(number(), number(), number());
+    const size_t positions = file.addPositions(corners);
+    for (const int mode : {4, 5, 6}) file.addMesh(positions, -1, mode);
+    glm::dmat4 outer(1.0), inner(1.0);
+    for (int i = 0; i < 12; ++i) {
+      outer[i / 3][i % 3] = number();
+      inner[i / 3][i % 3] = number();
+    }
+    file.document["nodes"] = {
+        {{"matrix", std::vector<double>(&outer[0][0], &outer[0][0] + 16)}, {"children", {1, 3}}, {"mesh", 0}},
+        {{"matrix", std::vector<double>(&inner[0][0], &inner[0][0] + 16)}, {"children", {2}}, {"mesh", 1}},
+        {{"mesh", 2}},
+        {{"mesh", 0}}};
+    const Scene scene = loadText("a.glb", file.glb());
+    const Triangles list = {{0, 1, 2}, {3, 4, 5}}, strip = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 5, 4}},
+                    fan = {{1, 2, 0}, {2, 3, 0}, {3, 4, 0}, {4, 5, 0}};
+    size_t id = 0;
+    for (const auto& [triangles, place] : {std::pair(list, outer), std::pair(strip, outer * inner),
+                                           std::pair(fan, outer * inner), std::pair(list, outer)}) {
+      for (const glm::uvec3& t : triangles) {
+        ASSERT_LT(id, scene.triangles.size());
+        const glm::uvec3 got = scene.triangles[id++];
+        const auto normal = [](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+          return glm::cross(b - a, c - a);
+        };
+        const glm::dvec3 expected = glm::inverse(glm::transpose(glm::dmat3(place))) *
+                                    normal(corners[t.x], corners[t.y], corners[t.z]);
+        EXPECT_GT(glm::dot(normal(scene.positions[got.x], scene.positions[got.y], scene.positions[got.z]),
+                           expected),
+                  0)
+            << "triangle " << id - 1;
+      }
+    }
+    EXPECT_EQ(id, scene.triangles.size());
+  }
+}
+
+TEST(LoadGltf, InvisibleNodesAreLeftOutWithTheirChildren) {
+  GltfFile file = squareFile<uint8_t>(5121);
+  const auto visible = [](bool value) { return json{{"KHR_node_visibility", {{"visible", value}}}}; };
+  file.document["nodes"] = {
+      {{"mesh", 0}, {"name", "seen"}, {"extensions", visible(true)}, {"children", {1, 4}}},
+      {{"mesh", 0}, {"extensions", visible(false)}, {"children", {2}}},
+      {{"children", {3}}, {"extensions", visible(true)}},
+      {{"mesh", 0}},
+      {{"mesh", 0}, {"name", "last"}}};
+  file.document["extensionsRequired"] = {"KHR_node_visibility"};
+  const Scene scene = loadText("a.glb", file.glb());
+  expectValid(scene);
+  ASSERT_EQ(scene.objects.size(), 2u);
+  EXPECT_EQ(scene.objects[0].name, "seen");
+  EXPECT_EQ(scene.objects[1].name, "last");
+  EXPECT_EQ(scene.hidden_nodes, 3u);
+  EXPECT_EQ(
+      scene.warnings,
+      (std::vector<std::string>{"invisible nodes (KHR_node_visibility), left out with all below them: 3"}));
+  file.document["nodes"][0]["extensions"] = visible(false);
+  EXPECT_EQ(
+      loadError("a.glb", file.glb()),
+      "a.glb: holds no triangles; invisible nodes (KHR_node_visibility), left out with all below them: 5");
+  file.document["nodes"][0]["extensions"]["KHR_node_visibility"]["visible"] = 0;
+  EXPECT_EQ(loadError("a.glb", file.glb()),
+            "a.glb: nodes[0].extensions.KHR_node_visibility.visible: expected true or false");
+}
+
+TEST(LoadGltf, CountsGlass) {
+  GltfFile file = squareFile<uint8_t>(5121);
+  const auto load = [&](const json& transmission, const char* mode) {
+    file.document["materials"] = {
+        {{"alphaMode", mode}, {"extensions", {{"KHR_materials_transmission", transmission}}}}};
+    file.document["meshes"][0]["primitives"][0]["material"] = 0;
+    return loadText("a.glb", file.glb());
+  };
+  EXPECT_EQ(load({{"transmissionFactor", 0.01}}, "OPAQUE").glass_triangles, 2u);
+  EXPECT_EQ(
+      load({{"transmissionFactor", 1}, {"transmissionTexture", {{"index", 0}}}}, "OPAQUE").glass_triangles,
+      2u);
+  EXPECT_EQ(load({{"transmissionFactor", 0.0}}, "OPAQUE").glass_triangles, 0u);
+  EXPECT_EQ(load(json::object(), "OPAQUE").glass_triangles, 0u);
+  const Scene blended = load({{"transmissionFactor", 1.0}}, "BLEND");
+  EXPECT_EQ(blended.glass_triangles, 0u);  // counted once, as alpha
+  EXPECT_EQ(blended.alpha_triangles, 2u);
+  file.document["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = "much";
+  EXPECT_EQ(
+      loadError("a.glb", file.glb()),
+      "a.glb: materials[0].extensions.KHR_materials_transmission.transmissionFactor: expected a number");
 }
 
 TEST(LoadGltf, ErrorsNameThePlace) {
