@@ -235,7 +235,7 @@ constexpr const char* kFooter =
     "are seen from their front (counter-clockwise), or what --free-side says.\n\n"
     "A box that touches a wall sees, from its surface, what is behind. So sides with triangles near\n"
     "them come in, until they are --margin away; the others stay, and boxes meet each other there. A\n"
-    "box of the path that would lose more than half of its width, height or length is left out.\n\n"
+    "box of the path is left out if a side would come in by more than a quarter of its extent.\n\n"
     "The path runs through the boxes' middle. A file of points has x,y,z on each line; # starts a\n"
     "comment.\n\n"
     "Examples:\n"

@@ -101,7 +101,7 @@ TEST(CellsCommand, PlacesAGridAndAPath) {
 /// The inside of a box of 8 x 4 x 6, which a post stands in.
 std::string roomWithAPost(const Folder& folder) {
   std::string text;
-  const auto box = [&text, vertices = 0](std::array<double, 3> low, std::array<double, 3> high) mutable {
+  auto box = [&text, vertices = 0](std::array<double, 3> low, std::array<double, 3> high) mutable {
     for (int corner = 0; corner < 8; ++corner) {
       text += fmt::format("v {} {} {}\n", (corner & 1 ? high : low)[0], (corner & 2 ? high : low)[1],
                           (corner & 4 ? high : low)[2]);
@@ -114,7 +114,7 @@ std::string roomWithAPost(const Folder& folder) {
     vertices += 8;
   };
   box({0, 0, 0}, {8, 4, 6});
-  box({4.5, 0, 2.5}, {5.5, 4, 3.5});
+  box({4.4, 0, 2.5}, {5.4, 4, 3.5});
   return folder.write("room.obj", text).string();
 }
 
@@ -135,11 +135,12 @@ TEST(CellsCommand, WritesToStandardOutputAndNothingElseThere) {
   const std::string file = (folder / "cells.json").string(), piped = (folder / "piped.json").string();
   const std::string grid = " --grid 2 --free-side any";
   ASSERT_EQ(runProgram("cells " + scene + " -o " + file + grid).exit_code, 0);
-  ProgramRun run = runProgram("cells " + scene + " -o -" + grid + " >" + piped);
+  ProgramRun run =
+      runProgram("cells " + scene + " -o -" + grid + " >" + piped + " 2>/dev/null || exit 9; true");
   ASSERT_EQ(run.exit_code, 0) << run.output;
   EXPECT_EQ(std::string(readFile(piped).view()), std::string(readFile(file).view()));
   EXPECT_FALSE(std::filesystem::exists("-"));
-  run = runProgram("cells " + scene + " -o -" + grid + " 2>&1 >/dev/full");
+  run = runProgram("cells " + scene + " -o -" + grid + " >/dev/full");
   EXPECT_EQ(run.exit_code, 1) << run.output;
 }
 
@@ -185,7 +186,7 @@ TEST(CellsCommand, PathsKeepClearOfTrianglesOrSayWhichCannot) {
   EXPECT_NE(run.output.find("warning: path-2 is left out: "), std::string::npos) << run.output;
   ASSERT_EQ(loadCells(cells).size(), 2u);
   EXPECT_EQ(loadCells(cells)[1].name, "path-3");
-  EXPECT_NEAR(loadCells(cells)[1].size.z, 7 - 5.5 - 0.01, 1e-9) << "beside the post";
+  EXPECT_NEAR(loadCells(cells)[1].size.z, 7 - 5.4 - 0.01, 1e-6) << "beside the post";
   EXPECT_NEAR(loadCells(cells)[0].size.y, 1.99, 1e-9) << "above the floor";
   run = runProgram(path + "--margin 0");
   ASSERT_EQ(run.exit_code, 0) << run.output;
