@@ -126,15 +126,15 @@ std::vector<ReportFact> sceneFacts(const BakeReport& report) {
 
 /// What is said against cells, in full, below their table.
 void addWarnings(HtmlReport& html, const BakeReport& report) {
-  std::vector<ReportFact> facts;
+  ReportTable table{.caption = "Cells that may not be meant so",
+                    .columns = {"cell", "what there is to say"},
+                    .text_columns = 2};
   for (size_t i = 0; i < report.cells.size(); ++i) {
     for (const CellWarning& warning : warningsOf(report, i)) {
-      facts.push_back({report.cells[i].cell.name, warning.text});
+      table.rows.push_back({report.cells[i].cell.name, warning.text});
     }
   }
-  if (facts.empty()) return;
-  html.text("Warnings: these cells may not be meant so.");
-  html.facts(facts);
+  if (!table.rows.empty()) html.table(table);
 }
 
 void addGrowth(HtmlReport& html, const BakeReport& report, const std::vector<Curve>& curves) {
