@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/scene/cell_frame.h"
-#include "core/scene/clear_box.h"
 #include "core/scene/contained.h"
 
 namespace sightline {
@@ -18,6 +17,8 @@ namespace {
 constexpr double kBeside = 1.0 / 4;
 /// Of the scene's diagonal: no viewer's room is so small.
 constexpr double kSmallestShare = 1e-6;
+/// Of the largest coordinate: four times the spacing of floats just below a power of two.
+constexpr double kFourSpacings = 0x1p-21;
 
 double largest(const glm::dvec3& v) {
   return std::max({v.x, v.y, v.z});

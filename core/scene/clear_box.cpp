@@ -17,6 +17,8 @@ namespace {
 constexpr double kTooNear = 1 - 0x1p-10;
 /// Of a cell's smallest extent.
 constexpr double kMarginShare = 0.01, kLargestMarginShare = 0.125;
+/// Of a coordinate: floats are at most so far apart there.
+constexpr double kSpacing = 0x1p-23;
 
 /// A box along the axes, those of the world or of the cell.
 struct Box {
@@ -156,7 +158,8 @@ ViewCell withInsets(ViewCell cell, const SideInsets& insets) {
 
 double defaultMargin(const Bounds& bounds, double extent) {
   const glm::vec3 reach = glm::max(glm::abs(bounds.low), glm::abs(bounds.high));
-  return std::max(extent * kMarginShare, std::max({reach.x, reach.y, reach.z}) * kFourSpacings);
+  const double spacing = double(std::max({reach.x, reach.y, reach.z})) * kSpacing;
+  return std::min(std::max(extent * kMarginShare, spacing), extent * kLargestMarginShare);
 }
 
 void checkMargin(double margin, double extent, const std::string& what) {

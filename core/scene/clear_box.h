@@ -7,10 +7,6 @@
 
 namespace sightline {
 
-/// Four times the spacing of floats just below a power of two, as a share of the coordinate: places closer to
-/// each other than this may become one when they are rounded.
-inline constexpr double kFourSpacings = 0x1p-21;
-
 /// How far the sides of a box come in, along its local axes.
 struct SideInsets {
   glm::dvec3 low{0.0}, high{0.0};
@@ -33,8 +29,9 @@ std::optional<SideInsets> insetsToClear(const Scene& scene, const Bvh& bvh, cons
 ViewCell withInsets(ViewCell cell, const SideInsets& insets);
 
 /// The margin of cells whose smallest extent is `extent`, unless another is asked for: a hundredth of it, yet
-/// at least four times the spacing of floats at the scene's farthest coordinate, to which the corners of
-/// cells and triangles are rounded.
+/// at least the spacing of floats at the scene's farthest coordinate, to which the corners of cells are
+/// rounded, and at most an eighth of it: of cells that small so far out, little more than the rounding is
+/// left.
 double defaultMargin(const Bounds& bounds, double extent);
 
 /// Throws Error (wrong usage) that begins with `what` unless `margin` is 0, or above it and at most an eighth

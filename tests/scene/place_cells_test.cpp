@@ -13,6 +13,7 @@
 #include "core/gvs/bake_cell.h"
 #include "core/scene/arc_tangent.h"
 #include "core/scene/cell_frame.h"
+#include "core/scene/contained.h"
 #include "core/scene/generate.h"
 #include "core/scene/mesh_builder.h"
 #include "tests/scene/box_overlap.h"
@@ -202,6 +203,22 @@ TEST(GridCells, OnlySidesWithSomethingNearThemComeIn) {
     }
   }
   EXPECT_NEAR(volume, 7.75 * 3.75 * 5.75, 1e-9) << "no gap but at the walls";
+}
+
+/// There floats are half a unit apart: what rays leave is not the box but its corners' nearest floats.
+TEST(GridCells, FarFromTheOriginTheMarginIsAboveTheRounding) {
+  MeshBuilder mesh;
+  mesh.box({5'000'000, 0, 5'000'000}, {5'000'032, 8, 5'000'032});
+  const Scene room = reversed(toScene(mesh));
+  GridOptions options;
+  options.size = glm::dvec3(3.7);
+  const std::vector<ViewCell> cells = grid(room, options);
+  EXPECT_GT(cells.size(), 50u);
+  for (const ViewCell& cell : cells) EXPECT_EQ(containedTriangles(room, cell).size(), 0u) << cell.name;
+  options.margin = 0;
+  size_t touching = 0;
+  for (const ViewCell& cell : grid(room, options)) touching += containedTriangles(room, cell).empty() ? 0 : 1;
+  EXPECT_GT(touching, 20u);
 }
 
 TEST(GridCells, ABoxMayBeMetByAMarginAndNoDeeper) {
