@@ -5,9 +5,11 @@
 #include <exception>
 
 #include "core/cli/bake_options.h"
+#include "core/cli/cell_warnings.h"
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/stop_signal.h"
+#include "core/device/cpu_tracer.h"
 #include "core/device/naive_device.h"
 #include "core/error.h"
 #include "core/gvs/algorithm_revision.h"
@@ -90,8 +92,41 @@ void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, 
   }
 }
 
+NearestHits nearestHits(Device& device) {
+  return [&device](std::span<const Ray> rays, std::span<Hit> hits) { device.traceRays(rays, hits); };
+}
+
+/// Warnings of the planned cells, by the device, or without one (of a complete bake) by a tree made for it.
+std::vector<std::vector<CellWarning>> checkPlanned(const BakeOptions& options, const Scene& scene,
+                                                   const Bake& bake, const Tracer& tracer) {
+  const std::vector<ViewCell>& cells = bake.head().planned;
+  if (tracer.device) {
+    return checkCells(scene, tracer.bvh, cells, options.free_side, nearestHits(*tracer.device));
+  }
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const CpuTracer cpu(scene, bvh);
+  return checkCells(scene, bvh, cells, options.free_side,
+                    [&cpu](std::span<const Ray> rays, std::span<Hit> hits) {
+                      for (size_t i = 0; i < rays.size(); ++i) hits[i] = cpu.trace(rays[i]);
+                    });
+}
+
+/// Says what can be said of the cells before the bake. Throws Error with --strict-cells.
+void warnOfCells(const BakeOptions& options, const Scene& scene, const Bake& bake, const Tracer& tracer,
+                 BakeReport& report, CellWarningPrinter& printer) {
+  report.warnings = checkPlanned(options, scene, bake, tracer);
+  std::vector<WarnedCell> cells;
+  for (size_t i = 0; i < report.warnings.size(); ++i) {
+    cells.push_back({bake.head().planned[i].name, report.warnings[i]});
+  }
+  if (options.strict_cells) refuseWarnedCells(cells);
+  for (const auto& [name, warnings] : cells) printer.say(name, warnings);
+  printer.end();
+}
+
 /// Bakes what is missing, with progress, and keeps how the sets grew for the page. Returns the exit code.
-int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Bake& bake, BakePage& page) {
+int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Bake& bake, BakePage& page,
+              CellWarningPrinter& warnings) {
   if (!bake.partProblem().empty()) {
     say(fmt::format("{}: cut off or damaged after {} whole cells ({}); the rest is baked again",
                     bake.partFile().string(), bake.resumed(), bake.partProblem()));
@@ -112,7 +147,13 @@ int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Ba
   };
   BakeEvents events;
   events.progress = [&](uint32_t index, const BakeProgress& progress) { printer.progress(index, progress); };
-  events.cell_done = [&](uint32_t index, const CellPvs& pvs) { printer.cellDone(index, summarize(pvs)); };
+  const uint64_t triangles = scene.triangles.size() - scene.degenerate_triangles;
+  events.cell_done = [&](uint32_t index, const CellPvs& pvs) {
+    printer.cellDone(index, summarize(pvs));
+    if (const auto warning = checkSetSize(pvs.triangles.size(), triangles)) {
+      warnings.say(pvs.cell.name, {&*warning, 1});
+    }
+  };
   try {
     const DeviceInfo info = device.info();
     if (bake.run(info.id + ", " + info.name, baker, events, stop.flag())) return 0;
@@ -133,9 +174,7 @@ std::vector<uint8_t> readPicture(const std::filesystem::path& file) {
 
 /// Draws the pictures, and adds them to the page if one is written. Returns the exit code.
 int drawCells(const BakeOptions& options, const Scene& scene, Device& device, BakePage& page) {
-  const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
-    device.traceRays(rays, hits);
-  };
+  const TraceRays trace = nearestHits(device);
   const PvsFile pvs = loadPvs(options.out);
   const StopSignal stop;
   for (uint32_t i = 0; i < pvs.cells.size(); ++i) {
@@ -169,6 +208,22 @@ void writeReport(const BakeOptions& options, const Bake& bake, BakeReport& repor
   if (!options.report.empty()) saveText(reportJson(report), options.report);
 }
 
+/// The finished cells, with what there is to say about their sets, too.
+std::vector<WarnedCell> warnedCells(const BakeReport& report) {
+  std::vector<WarnedCell> cells;
+  for (size_t i = 0; i < report.cells.size(); ++i) {
+    cells.push_back({report.cells[i].cell.name, warningsOf(report, i)});
+  }
+  return cells;
+}
+
+void sayTable(const BakeReport& report, const std::vector<WarnedCell>& warned) {
+  std::vector<std::vector<CellWarning>> warnings;
+  for (const WarnedCell& cell : warned) warnings.push_back(cell.second);
+  std::fputs(("\n" + cellTable(report.cells, uint32_t(report.scene.triangles), warnings)).c_str(), stdout);
+  std::fflush(stdout);
+}
+
 void runBake(const BakeOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   checkParams(options.params);
@@ -196,14 +251,15 @@ void runBake(const BakeOptions& options) {
   if (!bake.complete() || !options.pictures.empty()) {
     openTracer(tracer, options, scene, report);
   }
-  if (!bake.complete()) exit_code = bakeCells(options, scene, *tracer.device, bake, page);
+  CellWarningPrinter printer;
+  warnOfCells(options, scene, bake, tracer, report, printer);
+  if (!bake.complete()) exit_code = bakeCells(options, scene, *tracer.device, bake, page, printer);
+  printer.end();
 
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (!bake.finished().empty()) {
-    std::fputs(("\n" + cellTable(bake.finished(), bake.head().triangle_count)).c_str(), stdout);
-    std::fflush(stdout);
-  }
   writeReport(options, bake, report);
+  const std::vector<WarnedCell> warned = warnedCells(report);
+  if (!report.cells.empty()) sayTable(report, warned);
   std::exception_ptr problem;  // with the pictures; the curves are not lost for it
   try {
     if (exit_code == 0 && !options.pictures.empty()) {
@@ -215,6 +271,7 @@ void runBake(const BakeOptions& options) {
   writePage(options, report, page);
   if (problem) std::rethrow_exception(problem);
   if (exit_code != 0) throw ExitCode{exit_code};
+  if (options.strict_cells) refuseWarnedCells(warned);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/cli/device_check.h"
+#include "core/cli/free_side_option.h"
 #include "core/cli/number_checks.h"
 #include "core/gvs/thesis_params.h"
 
@@ -166,6 +167,12 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
   command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");
   command.add_flag("--overwrite", options.overwrite, "replace a bake with other inputs");
+  command.add_flag(
+      "--strict-cells", options.strict_cells,
+      "exit code 2, before the bake where it can be known, for a cell that there is a warning about");
+  declareFreeSide(
+      command, options.free_side,
+      "for the warning of cells inside of solids: front, back (turned faces) or any (no warning)");
   declareMachine(command, options.device, options.device_options, options.spatial_splits);
   declareMethod(command, options.params);
   declareSampling(command, options.params);

@@ -6,6 +6,7 @@
 
 #include "core/device/device.h"
 #include "core/pvs/pvs.h"
+#include "core/scene/in_solid.h"
 
 namespace sightline {
 
@@ -19,6 +20,8 @@ struct BakeOptions {
   DeviceOptions device_options;
   BakeParams params;
   bool repair = false, witnesses = false, spatial_splits = false, overwrite = false;
+  bool strict_cells = false;              ///< a warning about a cell is an error
+  FreeSide free_side = FreeSide::kFront;  ///< of the scene's faces, for the warning of cells in solids
 };
 
 /// Names of the methods that work, for --method.

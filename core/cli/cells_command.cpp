@@ -1,16 +1,25 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "core/cli/commands.h"
+#include "core/cli/free_side_option.h"
+#include "core/cli/number_checks.h"
+#include "core/cli/stop_signal.h"
 #include "core/error.h"
-#include "core/scene/contained.h"
+#include "core/gvs/bake_cell.h"
+#include "core/report/status_line.h"
+#include "core/report/text.h"
+#include "core/scene/cells_text.h"
+#include "core/scene/clear_box.h"
 #include "core/scene/file_io.h"
 #include "core/scene/place_cells.h"
 
@@ -20,13 +29,23 @@ namespace {
 struct CellsArguments {
   std::string scene;
   std::string output;
+  bool overwrite = false;
   std::string grid;
   std::string origin;
+  std::vector<std::string> region;
+  std::vector<uint64_t> count;
   GridOptions grid_options;
-  std::string free_side = "front";
   std::vector<std::string> path;
   PathOptions path_options;
+  std::optional<double> margin;
+
+  bool toStandardOutput() const { return output == "-"; }
+  /// Where to say what was done.
+  std::FILE* messages() const { return toStandardOutput() ? stderr : stdout; }
 };
+
+/// So many cells are named one by one that were left out.
+constexpr size_t kNamedCells = 10;
 
 /// Numbers with commas between them. `what` and `where` start the error's line.
 std::vector<double> parseNumbers(const std::string& text, const std::string& where) {
@@ -83,10 +102,50 @@ std::vector<glm::dvec3> readPath(const std::vector<std::string>& arguments) {
   return points;
 }
 
-std::vector<ViewCell> placeGrid(const Scene& scene, const GridOptions& options) {
+GridOptions gridOptions(const CellsArguments& arguments) {
+  GridOptions options = arguments.grid_options;
+  options.size = parseSize(arguments.grid);
+  options.margin = arguments.margin;
+  if (!arguments.origin.empty()) options.origin = parsePoint(arguments.origin, "--origin");
+  if (!arguments.region.empty()) {
+    options.region = {parsePoint(arguments.region[0], "--region"),
+                      parsePoint(arguments.region[1], "--region")};
+  }
+  if (!arguments.count.empty()) {
+    options.count = {arguments.count[0], arguments.count[1], arguments.count[2]};
+  }
+  return options;
+}
+
+/// The grid's cells, with progress. Throws ExitCode if it was stopped.
+std::vector<ViewCell> runGrid(const Scene& scene, const GridOptions& options, GridCounts& counts,
+                              std::FILE* messages) {
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const StopSignal stop;
+  StatusLine status(messages);
+  GridHooks hooks;
+  hooks.stop = stop.flag();
+  hooks.progress = [&](uint64_t done, uint64_t boxes) {
+    status.show([&] {
+      return fmt::format("grid: {} of {} boxes, {} %", done, boxes,
+                         100 * done / std::max<uint64_t>(boxes, 1));
+    });
+  };
+  try {
+    std::vector<ViewCell> cells = gridCells(scene, bvh, options, &counts, hooks);
+    status.end();
+    return cells;
+  } catch (const Interrupted&) {
+    status.end();
+    fmt::print(messages, "stopped: no cells are written\n");
+    throw ExitCode{stop.exitCode()};
+  }
+}
+
+std::vector<ViewCell> placeGrid(const Scene& scene, const CellsArguments& arguments) {
+  std::FILE* const out = arguments.messages();
   GridCounts counts;
-  std::vector<ViewCell> cells = gridCells(scene, bvh, options, &counts);
+  std::vector<ViewCell> cells = runGrid(scene, gridOptions(arguments), counts, out);
   const std::string line = fmt::format(
       "{} boxes: {} kept, {} met by triangles, {} with nothing below, {} too high, {} inside of solids",
       counts.boxes, counts.kept, counts.blocked, counts.nothing_below, counts.too_high, counts.in_solid);
@@ -94,53 +153,141 @@ std::vector<ViewCell> placeGrid(const Scene& scene, const GridOptions& options) 
     throw Error("no free box in the grid (" + line + "); try a smaller size, another --origin" +
                 (counts.in_solid > 0 ? ", or --free-side" : ""));
   }
-  fmt::print("{}\n", line);
+  fmt::print(out, "{}\n", line);
+  if (counts.inset > 0) {
+    fmt::print(out, "{} of them are smaller, to keep clear of triangles (--margin)\n", counts.inset);
+  }
   if (counts.in_solid > counts.kept) {
-    fmt::print("note: if those are not solid, the scene's faces are turned: try --free-side back or any\n");
+    fmt::print(out,
+               "note: if those are not solid, the scene's faces are turned: try --free-side back or any\n");
   }
   return cells;
+}
+
+/// Says, a line a cell, what meets those that are left out.
+void sayBlocked(const std::vector<ClearCells::Blocked>& blocked, std::FILE* out) {
+  for (size_t i = 0; i < std::min(blocked.size(), kNamedCells); ++i) {
+    fmt::print(out, "warning: {} is left out: {} reach into it too far to keep clear of them\n",
+               blocked[i].cell.name, counted(blocked[i].triangles, "triangle"));
+  }
+  if (blocked.size() > kNamedCells) {
+    fmt::print(out, "warning: {} more cells are left out for the same reason\n",
+               blocked.size() - kNamedCells);
+  }
 }
 
 std::vector<ViewCell> placePath(const Scene& scene, const CellsArguments& arguments) {
-  std::vector<ViewCell> cells = pathCells(readPath(arguments.path), arguments.path_options);
-  for (const ViewCell& cell : cells) {
-    const size_t met = containedTriangles(scene, cell).size();
-    if (met > 0) fmt::print("note: {} meets {} triangles\n", cell.name, met);
+  const PathOptions& options = arguments.path_options;
+  std::vector<ViewCell> cells = pathCells(readPath(arguments.path), options);
+  const double smallest = std::min({options.width, options.height, options.length});
+  const double margin = arguments.margin.value_or(defaultMargin(sceneBounds(scene), smallest));
+  checkMargin(margin, smallest, "cells along a path");
+  if (margin == 0) return cells;
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  ClearCells clear = keepClear(scene, bvh, cells, margin);
+  std::FILE* const out = arguments.messages();
+  if (clear.cells.empty()) {
+    throw Error(
+        fmt::format("no box of the path is free: {} reach into {}; move the path, make it narrower or "
+                    "lower, or take --margin 0",
+                    counted(clear.blocked[0].triangles, "triangle"), clear.blocked[0].cell.name));
   }
-  return cells;
+  sayBlocked(clear.blocked, out);
+  if (clear.inset > 0) {
+    fmt::print(out, "{} of {} boxes are smaller, to keep clear of triangles (--margin)\n", clear.inset,
+               cells.size());
+  }
+  return std::move(clear.cells);
 }
 
-void run(CellsArguments arguments) {
-  if (arguments.grid.empty() == arguments.path.empty()) {
-    throw Error("cells: takes either --grid or --path (see: sightline cells --help)", kExitUsage);
-  }
-  if (!arguments.grid.empty()) arguments.grid_options.size = parseSize(arguments.grid);
-  if (!arguments.origin.empty()) arguments.grid_options.origin = parsePoint(arguments.origin, "--origin");
-  arguments.grid_options.free_side = arguments.free_side == "front"  ? FreeSide::kFront
-                                     : arguments.free_side == "back" ? FreeSide::kBack
-                                                                     : FreeSide::kAny;
+/// Writing is refused before the work, not after it.
+void checkOutput(const CellsArguments& arguments) {
+  if (arguments.toStandardOutput()) return;
   std::vector<std::filesystem::path> inputs(arguments.path.begin(), arguments.path.end());
   inputs.push_back(arguments.scene);
   requireSeparate(std::array<std::filesystem::path, 1>{arguments.output}, inputs);
+  std::error_code ignored;
+  if (!arguments.overwrite && std::filesystem::is_regular_file(arguments.output, ignored)) {
+    throw Error(arguments.output + ": is there already; name another file, or --overwrite it");
+  }
+}
+
+void run(const CellsArguments& arguments) {
+  if (arguments.grid.empty() == arguments.path.empty()) {
+    throw Error("cells: takes either --grid or --path (see: sightline cells --help)", kExitUsage);
+  }
+  checkOutput(arguments);
   const Scene scene = loadScene(arguments.scene);
   const std::vector<ViewCell> cells =
-      arguments.grid.empty() ? placePath(scene, arguments) : placeGrid(scene, arguments.grid_options);
+      arguments.grid.empty() ? placePath(scene, arguments) : placeGrid(scene, arguments);
+  if (arguments.toStandardOutput()) {
+    std::fputs(cellsText(cells, "standard output").c_str(), stdout);
+    return;
+  }
   saveCells(cells, arguments.output);
   fmt::print("{}: {} view cells\n", arguments.output, cells.size());
 }
 
 constexpr const char* kFooter =
     "Lengths are in the scene's units, y is up.\n\n"
-    "A box of the grid is kept if no triangle meets it (one may touch it), something is straight\n"
-    "below its centre, and it is not inside of something solid: at least half of the triangles that\n"
-    "it sees are seen from their front (counter-clockwise), or what --free-side says.\n\n"
+    "A box of the grid is kept if no triangle reaches into it, something is straight below its\n"
+    "centre, and it is not inside of something solid: at least half of the triangles that it sees\n"
+    "are seen from their front (counter-clockwise), or what --free-side says.\n\n"
+    "A box that touches a wall sees, from its surface, what is behind. So sides with triangles near\n"
+    "them come in, until they are --margin away; the others stay, and boxes meet each other there. A\n"
+    "box of the path is left out if a side would come in by more than a quarter of its extent.\n\n"
     "The path runs through the boxes' middle. A file of points has x,y,z on each line; # starts a\n"
     "comment.\n\n"
     "Examples:\n"
     "  sightline cells level.obj -o cells.json --grid 8,3,8 --max-height 3\n"
+    "  sightline cells level.obj -o cells.json --grid 2 --region -10,0,-10 10,4,10\n"
+    "  sightline cells level.obj -o cells.json --grid 2 --origin -10,0,-10 --count 10 1 10\n"
     "  sightline cells city.glb -o cells.json --path 0,1.5,-200 0,1.5,200 120,1.5,200 \\\n"
     "      --width 2.5 --height 2 --length 150\n"
     "  sightline cells city.glb -o cells.json --path points.txt\n";
+
+void declareGrid(CLI::App& command, CellsArguments& a) {
+  CLI::Option* grid = command.add_option("--grid", a.grid, "Boxes of this size over the scene: S, or X,Y,Z");
+  command
+      .add_option(
+          "--origin", a.origin,
+          "X,Y,Z of the grid's low corner, where its first box begins (default: that of the region or "
+          "of the scene)")
+      ->needs(grid);
+  command
+      .add_option("--region", a.region,
+                  "Low and high corner, as X,Y,Z X,Y,Z, of the part of space that boxes cover (default: the "
+                  "scene's bounds)")
+      ->expected(2)
+      ->type_name("MIN MAX")
+      ->needs(grid);
+  command.add_option("--count", a.count, "At most so many boxes along x, y and z, from the origin on")
+      ->expected(3)
+      ->check(wholeNumber())
+      ->type_name("NX NY NZ")
+      ->needs(grid);
+  command
+      .add_option("--max-height", a.grid_options.max_height,
+                  "Only boxes with something at most so far below them (default: any)")
+      ->needs(grid);
+  declareFreeSide(command, a.grid_options.free_side,
+                  "front: keep boxes that see front faces; back: that see back faces; any: both")
+      ->needs(grid);
+}
+
+void declarePath(CLI::App& command, CellsArguments& a) {
+  CLI::Option* path =
+      command.add_option("--path", a.path, "Boxes along these points: x,y,z x,y,z ..., or a file");
+  command.add_option("--width", a.path_options.width, "Of a box on the path, sideways")
+      ->capture_default_str()
+      ->needs(path);
+  command.add_option("--height", a.path_options.height, "Of a box on the path, up")
+      ->capture_default_str()
+      ->needs(path);
+  command.add_option("--length", a.path_options.length, "Of a box along the path, at most")
+      ->capture_default_str()
+      ->needs(path);
+}
 
 }  // namespace
 
@@ -148,23 +295,14 @@ void addCellsCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("cells", "Place view cells: a grid in free space, or along a path");
   const auto a = std::make_shared<CellsArguments>();
   command->add_option("SCENE", a->scene, "Scene file: .obj, .gltf, .glb or .ply")->required();
-  command->add_option("-o,--output", a->output, "Cells file to write (.json)")->required();
-  command->add_option("--grid", a->grid, "Boxes of this size over the scene: S, or X,Y,Z");
-  command->add_option("--origin", a->origin,
-                      "X,Y,Z of a corner of the grid (default: the scene's low corner)");
-  command->add_option("--max-height", a->grid_options.max_height,
-                      "Only boxes with something at most so far below them (default: any)");
-  command
-      ->add_option("--free-side", a->free_side,
-                   "front: keep boxes that see front faces; back: that see back faces; any: both")
-      ->check(CLI::IsMember({"front", "back", "any"}))
-      ->capture_default_str();
-  command->add_option("--path", a->path, "Boxes along these points: x,y,z x,y,z ..., or a file");
-  command->add_option("--width", a->path_options.width, "Of a box on the path, sideways")
-      ->capture_default_str();
-  command->add_option("--height", a->path_options.height, "Of a box on the path, up")->capture_default_str();
-  command->add_option("--length", a->path_options.length, "Of a box along the path, at most")
-      ->capture_default_str();
+  command->add_option("-o,--output", a->output, "Cells file to write (.json), or - for standard output")
+      ->required();
+  command->add_flag("--overwrite", a->overwrite, "Replace the cells file if it is there");
+  command->add_option("--margin", a->margin,
+                      "How far boxes keep from triangles; 0: they may touch, and those of the path cut, some "
+                      "(default: a hundredth of their smallest extent)");
+  declareGrid(*command, *a);
+  declarePath(*command, *a);
   command->footer(kFooter);
   command->callback([a] { run(*a); });
 }

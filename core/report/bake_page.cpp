@@ -88,7 +88,12 @@ ReportTable cellsTable(const BakeReport& report) {
       std::ranges::any_of(report.cells, [](const auto& c) { return c.stats.contained_triangles > 0; });
   if (bounded) table.columns.push_back("error at most");
   if (contains) table.columns.push_back("contained");
-  for (const CellSummary& cell : report.cells) {
+  std::vector<std::string> warnings;
+  for (size_t i = 0; i < report.cells.size(); ++i) warnings.push_back(verdictNames(warningsOf(report, i)));
+  const bool warns = std::ranges::any_of(warnings, [](const auto& text) { return !text.empty(); });
+  if (warns) table.columns.push_back("warnings");
+  for (size_t i = 0; i < report.cells.size(); ++i) {
+    const CellSummary& cell = report.cells[i];
     const CellStats& s = cell.stats;
     const double share =
         report.scene.triangles == 0 ? 0 : double(cell.pvs_size) / double(report.scene.triangles);
@@ -102,6 +107,7 @@ ReportTable cellsTable(const BakeReport& report) {
     if (bounded)
       table.rows.back().push_back(s.bound_tests > 0 ? fmt::format("{:.3g}", s.error_bound) : "not tested");
     if (contains) table.rows.back().push_back(std::to_string(s.contained_triangles));
+    if (warns) table.rows.back().push_back(warnings[i]);
   }
   return table;
 }
@@ -115,6 +121,19 @@ std::vector<ReportFact> sceneFacts(const BakeReport& report) {
                                    {"hash of all sets", hashText(hashResult(report.cells))}};
   for (const std::string& warning : sceneWarnings(scene)) facts.push_back({"note", warning});
   return facts;
+}
+
+/// What is said against cells, in full, below their table.
+void addWarnings(HtmlReport& html, const BakeReport& report) {
+  ReportTable table{.caption = "Cells that may not be meant so",
+                    .columns = {"cell", "what there is to say"},
+                    .text_columns = 2};
+  for (size_t i = 0; i < report.cells.size(); ++i) {
+    for (const CellWarning& warning : warningsOf(report, i)) {
+      table.rows.push_back({report.cells[i].cell.name, warning.text});
+    }
+  }
+  if (!table.rows.empty()) html.table(table);
 }
 
 void addGrowth(HtmlReport& html, const BakeReport& report, const std::vector<Curve>& curves) {
@@ -189,6 +208,7 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
           "Missing rays at most: upper end of the 95 % interval of the share of fresh random rays that hit a "
           "triangle outside the set.") +
       (report.params.target_error > 0 ? " Error at most: the same of wrong pixels." : ""));
+  addWarnings(html, report);
   addGrowth(html, report, page.curves);
   if (!page.pictures.empty()) {
     html.section("Pictures");

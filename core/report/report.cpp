@@ -22,6 +22,16 @@ Json toJson(const std::optional<TreeSummary>& tree, uint64_t triangles) {
           {"bytes_per_triangle", triangles == 0 ? 0.0 : double(tree->bytes) / double(triangles)}};
 }
 
+Json toJson(const std::vector<CellWarning>& warnings) {
+  Json list = Json::array();
+  for (const CellWarning& warning : warnings) {
+    Json json = {{"verdict", verdictName(warning.verdict)}, {"text", warning.text}};
+    if (warning.verdict == CellVerdict::kMeetsTriangles) json["met_triangles"] = warning.triangles;
+    list.push_back(json);
+  }
+  return list;
+}
+
 }  // namespace
 
 TreeSummary summarize(const Bvh& bvh) {
@@ -52,10 +62,22 @@ SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t has
           scene.warnings};
 }
 
+std::vector<CellWarning> warningsOf(const BakeReport& report, size_t index) {
+  std::vector<CellWarning> warnings;
+  if (index < report.warnings.size()) warnings = report.warnings[index];
+  const uint64_t triangles = report.scene.triangles - report.scene.degenerate;
+  if (const auto warning = checkSetSize(report.cells[index].pvs_size, triangles)) {
+    warnings.push_back(*warning);
+  }
+  return warnings;
+}
+
 std::string reportJson(const BakeReport& report) {
   Json cells = Json::array();
-  for (const CellSummary& cell : report.cells) {
+  for (size_t i = 0; i < report.cells.size(); ++i) {
+    const CellSummary& cell = report.cells[i];
     Json json = cellToJson(cell.cell);
+    json["warnings"] = toJson(warningsOf(report, i));
     addCellStatistics(json, cell, report.scene.triangles);
     cells.push_back(json);
   }

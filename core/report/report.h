@@ -7,6 +7,7 @@
 #include "bvh/bvh.h"
 #include "core/device/device.h"
 #include "core/pvs/cell_summary.h"
+#include "core/scene/cell_check.h"
 #include "core/scene/scene.h"
 
 namespace sightline {
@@ -42,12 +43,16 @@ struct BakeReport {
   std::string set;                   ///< "array" or "hash"; empty without a device
   bool spatial_splits = false, witnesses = false, repair = false;
   BakeParams params;
-  std::vector<CellSummary> cells;  ///< finished, in order
+  std::vector<CellSummary> cells;                  ///< finished, in order
+  std::vector<std::vector<CellWarning>> warnings;  ///< checkCells of all planned cells; empty: not checked
   uint64_t planned_cells = 0;
   uint64_t resumed_cells = 0;       ///< of `cells`: baked by an earlier run
   double seconds = 0;               ///< of this run: loading, tree, cells
   uint64_t peak_process_bytes = 0;  ///< most memory that this process held
 };
+
+/// What is to be said against the finished cell `index`, its set's size included; mostly nothing.
+std::vector<CellWarning> warningsOf(const BakeReport& report, size_t index);
 
 /// The JSON text, keys as docs/report.md says.
 std::string reportJson(const BakeReport& report);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/pvs/cell_summary.h"
+#include "core/scene/cell_check.h"
 
 // Numbers and tables for people.
 namespace sightline {
@@ -20,8 +21,13 @@ std::string stageName(uint32_t stage);
 /// 16 hexadecimal digits.
 std::string hashText(uint64_t hash);
 
+/// The names of the warnings' verdicts, with commas between them.
+std::string verdictNames(std::span<const CellWarning> warnings);
+
 /// A line a cell: triangles, share of the scene, rays, Mrays/s, iterations, missing-ray share with the upper
-/// end of its 95 % interval, seconds. Ends with a newline.
-std::string cellTable(std::span<const CellSummary> cells, uint32_t triangle_count);
+/// end of its 95 % interval, seconds, verdicts of its warnings (a list a cell; without lists: none). Ends
+/// with a newline.
+std::string cellTable(std::span<const CellSummary> cells, uint32_t triangle_count,
+                      std::span<const std::vector<CellWarning>> warnings = {});
 
 }  // namespace sightline

@@ -3,6 +3,7 @@
 #include <set>
 
 #include "core/error.h"
+#include "core/scene/cells_text.h"
 #include "core/scene/check_cells.h"
 #include "core/scene/file_io.h"
 #include "core/scene/json_text.h"
@@ -13,6 +14,9 @@ namespace {
 
 using nlohmann::json;
 
+/// Keys that begin so belong to whoever wrote them, and are not looked at.
+constexpr std::string_view kOtherKeys = "x-";
+
 /// Says where in the file something is wrong: "cells.json: cells[3].size: ...".
 [[noreturn]] void fail(const std::string& file, const std::string& place, const std::string& what) {
   throw Error(fmt::format("{}: {}: {}", file, place, what));
@@ -21,10 +25,10 @@ using nlohmann::json;
 void checkKeys(const json& object, const std::set<std::string>& allowed, const std::string& file,
                const std::string& place) {
   for (const auto& [key, value] : object.items()) {
-    if (!allowed.contains(key)) {
-      fail(file, place,
-           fmt::format("unknown key {}, expected one of {}", json(key).dump(), json(allowed).dump()));
-    }
+    if (allowed.contains(key) || key.starts_with(kOtherKeys)) continue;
+    fail(file, place,
+         fmt::format("unknown key {}, expected one of {}, or {}... for keys of other programs",
+                     json(key).dump(), json(allowed).dump(), kOtherKeys));
   }
 }
 
@@ -83,20 +87,23 @@ std::vector<ViewCell> loadCells(const std::filesystem::path& file) {
   return cells;
 }
 
-void saveCells(const std::vector<ViewCell>& cells, const std::filesystem::path& file) {
+std::string cellsText(const std::vector<ViewCell>& cells, const std::string& file) {
   std::string text = "{\"cells\": [\n";
   try {
-    checkCells(cells, file.string());
+    checkCells(cells, file);
     for (size_t i = 0; i < cells.size(); ++i) {
       text += fmt::format("  {{\"name\": {}, \"center\": {}, \"size\": {}, \"rotation\": {}}}{}\n",
                           json(cells[i].name).dump(), vectorText(cells[i].center), vectorText(cells[i].size),
                           vectorText(cells[i].rotation), i + 1 < cells.size() ? "," : "");
     }
   } catch (const json::exception&) {
-    throw Error(fmt::format("{}: a cell's name is not valid UTF-8", file.string()));
+    throw Error(fmt::format("{}: a cell's name is not valid UTF-8", file));
   }
-  text += "]}\n";
-  saveText(text, file);
+  return text + "]}\n";
+}
+
+void saveCells(const std::vector<ViewCell>& cells, const std::filesystem::path& file) {
+  saveText(cellsText(cells, file.string()), file);
 }
 
 }  // namespace sightline

@@ -7,6 +7,7 @@
 
 #include "core/scene/box_triangle.h"
 #include "core/scene/cell_frame.h"
+#include "core/scene/leaves_in_box.h"
 #include "core/scene/triangle_area.h"
 
 namespace sightline {
@@ -14,6 +15,9 @@ namespace {
 
 /// Triangles of one task; the result does not depend on it.
 constexpr size_t kBlock = 1 << 15;
+
+/// Rounding, as a share of coordinates, between a cell's bounds in the world and its corners' places in it.
+constexpr double kSlack = 0x1p-40;
 
 /// How far, along each local axis, the corners of the faces in float lie from those of the exact box.
 glm::dvec3 roundingOfFaces(const ViewCell& cell, const CellFrame& frame) {
@@ -28,30 +32,59 @@ glm::dvec3 roundingOfFaces(const ViewCell& cell, const CellFrame& frame) {
   return margin;
 }
 
+/// The cell as its rays leave it.
+struct RoundedCell {
+  explicit RoundedCell(const ViewCell& cell) : frame(cellFrame(cell)) {
+    const glm::dvec3 margin = roundingOfFaces(cell, frame);
+    half_size = frame.half_size + margin;
+    front = cell.flat() ? margin.z : -HUGE_VAL;
+  }
+
+  bool contains(const Scene& scene, uint32_t id) const {
+    const glm::uvec3& t = scene.triangles[id];
+    const glm::dvec3 corners[3] = {frame.toLocal(glm::dvec3(scene.positions[t.x])),
+                                   frame.toLocal(glm::dvec3(scene.positions[t.y])),
+                                   frame.toLocal(glm::dvec3(scene.positions[t.z]))};
+    return triangleMeetsBox(corners, half_size) &&
+           std::max({corners[0].z, corners[1].z, corners[2].z}) > front &&
+           !hasZeroArea(scene.positions[t.x], scene.positions[t.y], scene.positions[t.z]);
+  }
+
+  CellFrame frame;
+  glm::dvec3 half_size{0.0};
+  double front = 0;  ///< local z that a triangle must get past
+};
+
 }  // namespace
 
 std::vector<uint32_t> containedTriangles(const Scene& scene, const ViewCell& cell) {
-  const CellFrame frame = cellFrame(cell);
-  const glm::dvec3 margin = roundingOfFaces(cell, frame);
-  const glm::dvec3 half_size = frame.half_size + margin;
-  const double front = cell.flat() ? margin.z : -HUGE_VAL;
-
+  const RoundedCell rounded(cell);
   const size_t count = scene.triangles.size();
   std::vector<std::vector<uint32_t>> blocks((count + kBlock - 1) / kBlock);
   tbb::parallel_for(size_t(0), blocks.size(), [&](size_t block) {
     for (size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
-      const glm::uvec3& t = scene.triangles[i];
-      const glm::dvec3 corners[3] = {frame.toLocal(glm::dvec3(scene.positions[t.x])),
-                                     frame.toLocal(glm::dvec3(scene.positions[t.y])),
-                                     frame.toLocal(glm::dvec3(scene.positions[t.z]))};
-      if (!triangleMeetsBox(corners, half_size)) continue;
-      if (std::max({corners[0].z, corners[1].z, corners[2].z}) <= front) continue;
-      if (hasZeroArea(scene.positions[t.x], scene.positions[t.y], scene.positions[t.z])) continue;
-      blocks[block].push_back(uint32_t(i));
+      if (rounded.contains(scene, uint32_t(i))) blocks[block].push_back(uint32_t(i));
     }
   });
   std::vector<uint32_t> result;
   for (const std::vector<uint32_t>& block : blocks) result.insert(result.end(), block.begin(), block.end());
+  return result;
+}
+
+std::vector<uint32_t> containedTriangles(const Scene& scene, const Bvh& bvh, const ViewCell& cell) {
+  const RoundedCell rounded(cell);
+  const CellFrame& frame = rounded.frame;
+  const glm::dvec3 reach = glm::abs(frame.axes[0]) * rounded.half_size.x +
+                           glm::abs(frame.axes[1]) * rounded.half_size.y +
+                           glm::abs(frame.axes[2]) * rounded.half_size.z;
+  const glm::dvec3 slack = (glm::abs(frame.center) + reach) * kSlack;
+  std::vector<uint32_t> result;
+  anyInLeaves(bvh, frame.center - reach - slack, frame.center + reach + slack, [&](uint32_t id) {
+    if (rounded.contains(scene, id)) result.push_back(id);
+    return false;
+  });
+  std::ranges::sort(result);
+  result.erase(std::ranges::unique(result).begin(), result.end());  // spatial splits give some twice
   return result;
 }
 

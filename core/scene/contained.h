@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bvh/bvh.h"
 #include "core/scene/scene.h"
 #include "core/scene/view_cell.h"
 
@@ -21,5 +22,8 @@ namespace sightline {
 /// in the last place, by which their corners stray from the exact cell (nothing for cells whose corners
 /// floats hold exactly). For a turned cell, whether a touching triangle counts is up to that rounding.
 std::vector<uint32_t> containedTriangles(const Scene& scene, const ViewCell& cell);
+
+/// The same by the scene's tree: looks at the triangles near the cell only.
+std::vector<uint32_t> containedTriangles(const Scene& scene, const Bvh& bvh, const ViewCell& cell);
 
 }  // namespace sightline

@@ -1,19 +1,31 @@
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <glm/gtc/type_precision.hpp>
 #include <string>
 
 #include "core/device/cpu_tracer.h"
 #include "core/error.h"
+#include "core/gvs/bake_cell.h"
 #include "core/scene/box_triangle.h"
+#include "core/scene/clear_box.h"
+#include "core/scene/leaves_in_box.h"
 #include "core/scene/place_cells.h"
 
 namespace sightline {
 namespace {
 
-constexpr int kProbes = 64;
+/// Between looks at the stop flag and calls of the progress: some tens of milliseconds.
+constexpr uint64_t kBoxesAtATime = 1024;
+
+/// A side comes in by this many margins at most: one for what touches the box, one for what reaches into it
+/// by less than a margin.
+constexpr double kMostInset = 2;
+
+/// Of a step: an end so near to a box's side by rounding is on it.
+constexpr double kSameStep = 1e-6;
 
 /// A box of this share of the size must be free: those that only touch a triangle are.
 constexpr double kTouching = 1 - 0x1p-20;
@@ -24,39 +36,14 @@ struct Box {
   glm::dvec3 center, half_size;
 };
 
-bool triangleMeets(const Scene& scene, uint32_t id, const Box& box) {
-  const glm::uvec3 t = scene.triangles[id];
-  const glm::dvec3 corners[3] = {glm::dvec3(scene.positions[t.x]) - box.center,
-                                 glm::dvec3(scene.positions[t.y]) - box.center,
-                                 glm::dvec3(scene.positions[t.z]) - box.center};
-  return triangleMeetsBox(corners, box.half_size);
-}
-
-bool overlaps(const glm::vec4& range_x, const glm::vec4& range_y, const glm::vec4& range_z, int child,
-              const glm::dvec3& low, const glm::dvec3& high) {
-  const int l = 2 * child, h = l + 1;
-  return range_x[l] <= high.x && range_x[h] >= low.x && range_y[l] <= high.y && range_y[h] >= low.y &&
-         range_z[l] <= high.z && range_z[h] >= low.z;
-}
-
 bool meetsAnything(const Scene& scene, const Bvh& bvh, const Box& box) {
-  const glm::dvec3 low = box.center - box.half_size, high = box.center + box.half_size;
-  std::vector<uint32_t> stack{0};
-  while (!stack.empty()) {
-    const BvhNode2& node = bvh.nodes2[stack.back()];
-    stack.pop_back();
-    for (int child = 0; child < 2; ++child) {
-      if (!overlaps(node.x, node.y, node.z, child, low, high)) continue;
-      if (node.count[child] == 0) {
-        stack.push_back(node.child[child]);
-        continue;
-      }
-      for (uint32_t i = 0; i < node.count[child]; ++i) {
-        if (triangleMeets(scene, bvh.references[node.child[child] + i], box)) return true;
-      }
-    }
-  }
-  return false;
+  return anyInLeaves(bvh, box.center - box.half_size, box.center + box.half_size, [&](uint32_t id) {
+    const glm::uvec3 t = scene.triangles[id];
+    const glm::dvec3 corners[3] = {glm::dvec3(scene.positions[t.x]) - box.center,
+                                   glm::dvec3(scene.positions[t.y]) - box.center,
+                                   glm::dvec3(scene.positions[t.z]) - box.center};
+    return triangleMeetsBox(corners, box.half_size);
+  });
 }
 
 Ray makeRay(const glm::dvec3& origin, const glm::vec3& direction) {
@@ -64,47 +51,55 @@ Ray makeRay(const glm::dvec3& origin, const glm::vec3& direction) {
   return {{from.x, from.y, from.z, 0}, {direction.x, direction.y, direction.z, 0}};
 }
 
-/// Directions over the whole sphere: even in height, turned by the golden ratio, none along an axis.
-std::array<glm::vec3, kProbes> probeDirections() {
-  std::array<glm::vec3, kProbes> directions;
-  for (int i = 0; i < kProbes; ++i) {
-    const double y = 1 - 2 * (i + 0.5) / kProbes, r = std::sqrt(1 - y * y),
-                 turn = 2.399963229728653 * (i + 0.5);
-    directions[size_t(i)] = glm::vec3(r * std::cos(turn), y, r * std::sin(turn));
+/// What became of a box.
+struct Outcome {
+  Verdict verdict = Verdict::kBlocked;
+  SideInsets insets;
+};
+
+/// Judges the boxes of one grid.
+class BoxJudge {
+ public:
+  BoxJudge(const Scene& scene, const Bvh& bvh, const GridOptions& options, double margin)
+      : scene_(scene), bvh_(bvh), options_(options), margin_(margin), tracer_(scene, bvh) {}
+
+  Outcome judge(const glm::dvec3& center) const {
+    const std::optional<SideInsets> insets = insetsAt(center);
+    if (!insets) return {Verdict::kBlocked, {}};
+    const Hit below = tracer_.trace(makeRay(center, {0, -1, 0}));
+    if (below.triangle == kNoTriangle) return {Verdict::kNothingBelow, {}};
+    if (options_.max_height > 0 && below.t - options_.size.y / 2 > options_.max_height) {
+      return {Verdict::kTooHigh, {}};
+    }
+    if (isInSolid(center)) return {Verdict::kInSolid, {}};
+    return {Verdict::kKept, *insets};
   }
-  return directions;
-}
 
-bool hitsBack(const Scene& scene, uint32_t id, const glm::vec3& direction) {
-  const glm::uvec3 t = scene.triangles[id];
-  const glm::dvec3 a = scene.positions[t.x];
-  const glm::dvec3 normal =
-      glm::cross(glm::dvec3(scene.positions[t.y]) - a, glm::dvec3(scene.positions[t.z]) - a);
-  return glm::dot(normal, glm::dvec3(direction)) > 0;
-}
-
-bool inSolid(const Scene& scene, const CpuTracer& tracer, FreeSide free_side, const glm::dvec3& point) {
-  if (free_side == FreeSide::kAny) return false;
-  static const std::array<glm::vec3, kProbes> kDirections = probeDirections();
-  int hits = 0, wrong = 0;
-  for (const glm::vec3& direction : kDirections) {
-    const Hit hit = tracer.trace(makeRay(point, direction));
-    if (hit.triangle == kNoTriangle) continue;
-    hits++;
-    wrong += hitsBack(scene, hit.triangle, direction) == (free_side == FreeSide::kFront);
+ private:
+  /// Nothing: a triangle is in the box.
+  std::optional<SideInsets> insetsAt(const glm::dvec3& center) const {
+    if (margin_ > 0) {
+      const CellFrame frame = cellFrame({"", center, options_.size, glm::dvec3(0)});
+      return insetsToClear(scene_, bvh_, frame, margin_, glm::dvec3(kMostInset * margin_));
+    }
+    if (meetsAnything(scene_, bvh_, {center, options_.size * (0.5 * kTouching)})) return std::nullopt;
+    return SideInsets{};
   }
-  return 2 * wrong > hits;
-}
 
-Verdict judge(const Scene& scene, const Bvh& bvh, const CpuTracer& tracer, const GridOptions& options,
-              const glm::dvec3& center) {
-  if (meetsAnything(scene, bvh, {center, options.size * (0.5 * kTouching)})) return Verdict::kBlocked;
-  const Hit below = tracer.trace(makeRay(center, {0, -1, 0}));
-  if (below.triangle == kNoTriangle) return Verdict::kNothingBelow;
-  if (options.max_height > 0 && below.t - options.size.y / 2 > options.max_height) return Verdict::kTooHigh;
-  if (inSolid(scene, tracer, options.free_side, center)) return Verdict::kInSolid;
-  return Verdict::kKept;
-}
+  bool isInSolid(const glm::dvec3& center) const {
+    if (options_.free_side == FreeSide::kAny) return false;
+    std::array<Hit, kSolidProbes> hits;
+    for (size_t i = 0; i < hits.size(); ++i) hits[i] = tracer_.trace(makeRay(center, probes_[i]));
+    return inSolid(scene_, options_.free_side, probes_, hits);
+  }
+
+  const Scene& scene_;
+  const Bvh& bvh_;
+  const GridOptions& options_;
+  double margin_;
+  CpuTracer tracer_;
+  std::array<glm::vec3, kSolidProbes> probes_ = solidProbes();
+};
 
 /// First step of the grid along an axis, and how many.
 struct Steps {
@@ -112,11 +107,79 @@ struct Steps {
   uint64_t count = 0;
 };
 
+/// The steps from the origin on that have a part between low and high; where the two are equal, one.
 Steps stepsOver(double low, double high, double origin, double size) {
-  const double first = std::floor((low - origin) / size);
-  const double last = std::max(first + 1, std::ceil((high - origin) / size));
-  if (!(std::fabs(first) < 1e15) || last - first > double(kMaxGridBoxes)) return {0, kMaxGridBoxes + 1};
+  const double first = std::max(0.0, std::floor((low - origin) / size + kSameStep));
+  double last = std::ceil((high - origin) / size - kSameStep);
+  if (low == high && low >= origin - size * kSameStep) last = std::max(last, first + 1);
+  if (last <= first) return {0, 0};
+  if (!(first < 1e15) || !(last - first <= double(kMaxGridBoxes))) return {0, kMaxGridBoxes + 1};
   return {int64_t(first), uint64_t(last - first)};
+}
+
+Steps stepsOf(const GridOptions& options, const Bounds& bounds, const glm::dvec3& origin, int axis) {
+  const double size = options.size[axis];
+  Steps steps;
+  if (options.region) {
+    steps = stepsOver(options.region->low[axis], options.region->high[axis], origin[axis], size);
+  } else if (options.count) {
+    steps = {0, (*options.count)[size_t(axis)]};
+  } else {
+    steps = stepsOver(bounds.low[axis], bounds.high[axis], origin[axis], size);
+  }
+  if (options.count && steps.count != 0) {
+    const int64_t end = int64_t(std::min((*options.count)[size_t(axis)], kMaxGridBoxes + 1));
+    steps.count = uint64_t(std::clamp(end - steps.first, int64_t(0), int64_t(steps.count)));
+  }
+  return steps;
+}
+
+/// The boxes of a grid, by number.
+struct Grid {
+  glm::dvec3 origin{0.0}, size{0.0};
+  Steps steps[3];
+
+  uint64_t boxes() const { return steps[0].count * steps[1].count * steps[2].count; }
+  glm::i64vec3 placeOf(uint64_t i) const {
+    const uint64_t x = i % steps[0].count, z = i / steps[0].count % steps[2].count;
+    const uint64_t y = i / steps[0].count / steps[2].count;
+    return {steps[0].first + int64_t(x), steps[1].first + int64_t(y), steps[2].first + int64_t(z)};
+  }
+  glm::dvec3 centerOf(uint64_t i) const { return origin + (glm::dvec3(placeOf(i)) + 0.5) * size; }
+};
+
+Grid gridOver(const Bounds& bounds, const GridOptions& options) {
+  Grid grid{options.origin.value_or(options.region ? options.region->low : glm::dvec3(bounds.low)),
+            options.size,
+            {}};
+  double total = 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    grid.steps[axis] = stepsOf(options, bounds, grid.origin, axis);
+    total *= double(grid.steps[axis].count);
+  }
+  if (total == 0) {
+    throw Error(std::string("grid of cells: no box from the origin on is in the ") +
+                    (options.region ? "region" : "scene") + "; lower the origin" +
+                    (options.region ? ", or set another region" : ", or set a count"),
+                kExitUsage);
+  }
+  if (!(total <= double(kMaxGridBoxes))) {
+    throw Error("grid of cells: more than " + std::to_string(kMaxGridBoxes) +
+                    " boxes of that size; take a larger one, or a smaller region",
+                kExitUsage);
+  }
+  return grid;
+}
+
+void checkRegion(const GridRegion& region) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::isfinite(region.low[axis]) && std::isfinite(region.high[axis]) &&
+        region.low[axis] <= region.high[axis]) {
+      continue;
+    }
+    throw Error("grid of cells: the region must run from its low to its high corner, in finite numbers",
+                kExitUsage);
+  }
 }
 
 void checkOptions(const GridOptions& options) {
@@ -129,49 +192,54 @@ void checkOptions(const GridOptions& options) {
     }
   }
   if (!(options.max_height >= 0)) throw Error("grid of cells: the height must be 0 or more", kExitUsage);
+  if (options.region) checkRegion(*options.region);
+  if (options.count && std::ranges::min(*options.count) == 0) {
+    throw Error("grid of cells: the counts must be 1 or more", kExitUsage);
+  }
+}
+
+/// Judges boxes begin .. begin + outcomes.size() - 1. Throws Interrupted.
+void judgeBoxes(const BoxJudge& judge, const Grid& grid, uint64_t begin, const std::atomic<bool>* stop,
+                std::span<Outcome> outcomes) {
+  tbb::parallel_for(size_t(0), outcomes.size(), [&](size_t i) {
+    if (stop == nullptr || !*stop) outcomes[i] = judge.judge(grid.centerOf(begin + i));
+  });
+  if (stop != nullptr && *stop) throw Interrupted{};
+}
+
+std::string nameOf(const glm::i64vec3& place) {
+  return "grid-" + std::to_string(place.x) + "-" + std::to_string(place.y) + "-" + std::to_string(place.z);
 }
 
 }  // namespace
 
 std::vector<ViewCell> gridCells(const Scene& scene, const Bvh& bvh, const GridOptions& options,
-                                GridCounts* counts) {
+                                GridCounts* counts, const GridHooks& hooks) {
   checkOptions(options);
   const Bounds bounds = sceneBounds(scene);
-  const glm::dvec3 origin = options.origin.value_or(glm::dvec3(bounds.low));
-  Steps steps[3];
-  double total = 1;
-  for (int axis = 0; axis < 3; ++axis) {
-    steps[axis] = stepsOver(bounds.low[axis], bounds.high[axis], origin[axis], options.size[axis]);
-    total *= double(steps[axis].count);
-  }
-  if (total > double(kMaxGridBoxes)) {
-    throw Error("grid of cells: the scene takes more than " + std::to_string(kMaxGridBoxes) +
-                    " boxes of that size; take a larger one",
-                kExitUsage);
-  }
-  const auto centerOf = [&](uint64_t i) {
-    const uint64_t x = i % steps[0].count, z = i / steps[0].count % steps[2].count;
-    const uint64_t y = i / steps[0].count / steps[2].count;
-    const glm::dvec3 step(double(steps[0].first + int64_t(x)), double(steps[1].first + int64_t(y)),
-                          double(steps[2].first + int64_t(z)));
-    return origin + (step + 0.5) * options.size;
-  };
-  const CpuTracer tracer(scene, bvh);
-  std::vector<Verdict> verdicts(size_t(total), Verdict::kBlocked);
-  tbb::parallel_for(size_t(0), verdicts.size(),
-                    [&](size_t i) { verdicts[i] = judge(scene, bvh, tracer, options, centerOf(i)); });
+  const Grid grid = gridOver(bounds, options);
+  const double smallest = std::min({options.size.x, options.size.y, options.size.z});
+  const double margin = options.margin.value_or(defaultMargin(bounds, smallest));
+  checkMargin(margin, smallest, "grid of cells");
+  const BoxJudge judge(scene, bvh, options, margin);
 
   std::vector<ViewCell> cells;
-  uint64_t tally[5] = {};
-  for (size_t i = 0; i < verdicts.size(); ++i) {
-    tally[size_t(verdicts[i])]++;
-    if (verdicts[i] != Verdict::kKept) continue;
-    const uint64_t x = i % steps[0].count, z = i / steps[0].count % steps[2].count;
-    const uint64_t y = i / steps[0].count / steps[2].count;
-    cells.push_back({"grid-" + std::to_string(x) + "-" + std::to_string(y) + "-" + std::to_string(z),
-                     centerOf(i), options.size, glm::dvec3(0)});
+  uint64_t tally[5] = {}, inset = 0;
+  std::vector<Outcome> outcomes;
+  for (uint64_t begin = 0; begin < grid.boxes(); begin += outcomes.size()) {
+    if (hooks.progress) hooks.progress(begin, grid.boxes());
+    outcomes.resize(std::min(kBoxesAtATime, grid.boxes() - begin));
+    judgeBoxes(judge, grid, begin, hooks.stop, outcomes);
+    for (size_t i = 0; i < outcomes.size(); ++i) {
+      tally[size_t(outcomes[i].verdict)]++;
+      if (outcomes[i].verdict != Verdict::kKept) continue;
+      inset += outcomes[i].insets.none() ? 0 : 1;
+      const ViewCell box{nameOf(grid.placeOf(begin + i)), grid.centerOf(begin + i), options.size,
+                         glm::dvec3(0)};
+      cells.push_back(withInsets(box, outcomes[i].insets));
+    }
   }
-  if (counts != nullptr) *counts = {verdicts.size(), tally[0], tally[1], tally[2], tally[3], tally[4]};
+  if (counts != nullptr) *counts = {grid.boxes(), tally[0], tally[1], tally[2], tally[3], tally[4], inset};
   return cells;
 }
 

@@ -1,14 +1,28 @@
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
 #include "core/error.h"
+#include "core/scene/arc_tangent.h"
+#include "core/scene/clear_box.h"
+#include "core/scene/contained.h"
 #include "core/scene/place_cells.h"
 
 namespace sightline {
 namespace {
 
-constexpr double kDegrees = 57.295779513082320877;
+/// Of a cell's extent: a side may come in so far. Half of the cell stays, the middle in it.
+constexpr double kMostInset = 0.25;
+
+/// Length of a vector, from operations that every machine rounds alike, without overflow on the way.
+double lengthOf(const glm::dvec3& v) {
+  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  if (largest == 0) return 0;
+  const glm::dvec3 scaled = v / largest;
+  return largest * std::sqrt(scaled.x * scaled.x + scaled.y * scaled.y + scaled.z * scaled.z);
+}
 
 struct Stretch {
   glm::dvec3 from, direction;  // direction of length 1
@@ -32,7 +46,7 @@ std::vector<Stretch> stretchesOf(std::span<const glm::dvec3> points) {
     }
     if (i == 0 || points[i] == points[i - 1]) continue;
     const glm::dvec3 step = points[i] - points[i - 1];
-    const double length = std::hypot(step.x, step.y, step.z);
+    const double length = lengthOf(step);
     stretches.push_back({points[i - 1], step / length, length});
   }
   if (stretches.empty()) throw Error("cells along a path: takes two different points or more", kExitUsage);
@@ -51,7 +65,7 @@ double bendLength(const Stretch& a, const Stretch& b, const PathOptions& options
   const bool level = turn.x == 0 && turn.z == 0;  // turns about y only: no height in it
   const double half = (level ? options.width : std::max(options.width, options.height)) / 2;
   // tan(angle / 2) = sin / (1 + cos); at most that of a right angle.
-  return half * std::min(1.0, std::hypot(turn.x, turn.y, turn.z) / std::max(1e-9, 1 + cosine));
+  return half * std::min(1.0, lengthOf(turn) / std::max(1e-9, 1 + cosine));
 }
 
 }  // namespace
@@ -70,9 +84,8 @@ std::vector<ViewCell> pathCells(std::span<const glm::dvec3> points, const PathOp
     }
     // Local z leaves along the path: pitch about x first (down is positive), then yaw about y.
     const glm::dvec3 d = stretch.direction;
-    const double level = std::hypot(d.x, d.z);
-    const glm::dvec3 rotation(d.y == 0 ? 0 : -std::atan2(d.y, level) * kDegrees,
-                              level == 0 ? 0 : std::atan2(d.x, d.z) * kDegrees, 0);
+    const double level = lengthOf({d.x, 0, d.z});
+    const glm::dvec3 rotation(0.0 - arcTangentDegrees(d.y, level), arcTangentDegrees(d.x, d.z), 0);
     const double before = s > 0 ? bendLength(stretches[s - 1], stretch, options) : 0;
     const double after = s + 1 < stretches.size() ? bendLength(stretch, stretches[s + 1], options) : 0;
     for (double k = 0; k < boxes; ++k) {
@@ -85,6 +98,23 @@ std::vector<ViewCell> pathCells(std::span<const glm::dvec3> points, const PathOp
     }
   }
   return cells;
+}
+
+ClearCells keepClear(const Scene& scene, const Bvh& bvh, std::span<const ViewCell> cells, double margin) {
+  std::vector<std::optional<SideInsets>> insets(cells.size());
+  tbb::parallel_for(size_t(0), cells.size(), [&](size_t i) {
+    insets[i] = insetsToClear(scene, bvh, cellFrame(cells[i]), margin, cells[i].size * kMostInset);
+  });
+  ClearCells result;
+  for (size_t i = 0; i < cells.size(); ++i) {
+    if (!insets[i]) {
+      result.blocked.push_back({cells[i], containedTriangles(scene, bvh, cells[i]).size()});
+      continue;
+    }
+    result.inset += insets[i]->none() ? 0 : 1;
+    result.cells.push_back(withInsets(cells[i], *insets[i]));
+  }
+  return result;
 }
 
 }  // namespace sightline

@@ -30,7 +30,7 @@ std::vector<Face> cellFaces(const ViewCell& cell);
 /// World-space corners of the cell, 8 of them (pairs coincide along an axis of size zero).
 std::vector<glm::vec3> cellCorners(const ViewCell& cell);
 
-/// Reads and checks a cells file. Unknown keys, missing keys, names twice, non-finite numbers and cells
+/// Reads and checks a cells file. Unknown keys (but x-...), missing keys, names twice, non-finite numbers, cells
 /// without area are errors that name file and place. Throws Error.
 std::vector<ViewCell> loadCells(const std::filesystem::path& file);
 

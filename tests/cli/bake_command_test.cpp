@@ -58,7 +58,7 @@ class Workplace {
                          z + (corner & 4 ? 2 : 0));
     }
     for (const auto& f :
-         {std::array{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}}) {
+         {std::array{1, 3, 4, 2}, {5, 6, 8, 7}, {1, 2, 6, 5}, {3, 7, 8, 4}, {1, 5, 7, 3}, {2, 4, 8, 6}}) {
       out << fmt::format("f {} {} {} {}\n", vertices + f[0], vertices + f[1], vertices + f[2],
                          vertices + f[3]);
     }
@@ -103,6 +103,106 @@ TEST(BakeCommand, BakesShowsATableAndIsRepeatable) {
   EXPECT_GT(loadPvs(place / "x.pvs").cells[0].triangles.size(), 50u);
   ASSERT_EQ(runProgram(place.bake("y.pvs", "--threads 1")).exit_code, 0);
   expectSameBake(place / "x.pvs", place / "y.pvs");
+}
+
+struct OddCell {
+  std::string name, center, size;
+};
+
+/// Replaces the cells of the workplace.
+void writeCells(const Workplace& place, const std::vector<OddCell>& cells) {
+  std::ofstream out(place / "cells.json");
+  out << "{\"cells\":[";
+  for (size_t i = 0; i < cells.size(); ++i) {
+    out << (i == 0 ? "" : ",")
+        << fmt::format(R"({{"name":"{}","center":[{}],"size":[{}]}})", cells[i].name, cells[i].center,
+                       cells[i].size);
+  }
+  out << "]}";
+}
+
+/// Blocks of 2 x 2 stand at 0, 4, 8, ... with gaps of 2 between them.
+const std::vector<OddCell> kOddCells = {{"good", "3,0.5,10", "0.5,0.5,0.5"},
+                                        {"cut", "2,0.5,1", "0.5,0.5,0.5"},
+                                        {"inside", "1,0.5,1", "0.1,0.1,0.1"},
+                                        {"away", "300,0.5,1", "0.5,0.5,0.5"},
+                                        {"huge", "11,55,11", "90,1,1"}};
+
+TEST(BakeCommand, WarnsOfCellsThatAreHardlyMeant) {
+  const Workplace place;
+  writeCells(place, kOddCells);
+  const std::string bake =
+      place.bake("x.pvs", "--report " + (place / "r.json") + " --html " + (place / "r.html"));
+  for (const bool complete : {false, true}) {  // again: without a device
+    const ProgramRun run = runProgram(bake);
+    ASSERT_EQ(run.exit_code, 0) << run.output;
+    EXPECT_EQ(contains(run, "already complete"), complete);
+    EXPECT_FALSE(contains(run, "warning: good")) << run.output;
+    EXPECT_TRUE(contains(run, "warning: cut cuts or touches ")) << run.output;
+    EXPECT_TRUE(contains(run, "warning: inside lies inside something solid")) << run.output;
+    EXPECT_TRUE(contains(run, "warning: away lies outside the scene, ")) << run.output;
+    EXPECT_TRUE(contains(run, "warning: huge is 90 long, ")) << run.output;
+    const size_t table = run.output.find("missing rays (95 %)");
+    ASSERT_NE(table, std::string::npos);
+    EXPECT_NE(run.output.find("warning: in solid", table), std::string::npos) << run.output;
+
+    const auto cells = nlohmann::json::parse(readText(place / "r.json"))["cells"];
+    ASSERT_EQ(cells.size(), 5u);
+    const char* verdicts[] = {"", "meets triangles", "in solid", "outside", "too large"};
+    EXPECT_TRUE(cells[0]["warnings"].empty()) << cells[0];
+    for (size_t i = 1; i < 5; ++i) {
+      ASSERT_GE(cells[i]["warnings"].size(), 1u) << i;
+      EXPECT_EQ(cells[i]["warnings"][0]["verdict"], verdicts[i]);
+    }
+    EXPECT_GE(cells[1]["warnings"][0]["met_triangles"].get<int>(), 2);
+    const std::string page = readText(place / "r.html");
+    EXPECT_NE(page.find("<th scope=\"col\">warnings</th>"), std::string::npos);
+    EXPECT_NE(page.find("lies inside something solid"), std::string::npos);
+  }
+}
+
+TEST(BakeCommand, StrictCellsNamesThemAllBeforeTheBake) {
+  const Workplace place;
+  EXPECT_EQ(runProgram(place.bake("y.pvs", "--strict-cells")).exit_code, 0) << "good cells";
+  writeCells(place, kOddCells);
+  const ProgramRun run = runProgram(place.bake("x.pvs", "--strict-cells"));
+  EXPECT_EQ(run.exit_code, 2) << run.output;
+  EXPECT_TRUE(contains(run, "sightline: --strict-cells: 4 cells cannot be taken: cut cuts or touches "))
+      << run.output;
+  for (const char* cell : {"; inside lies", "; away lies", "; huge is"})
+    EXPECT_TRUE(contains(run, cell)) << run.output;
+  EXPECT_FALSE(contains(run, "good 1/5")) << run.output;
+  EXPECT_FALSE(std::filesystem::exists(place / "x.pvs"));
+  EXPECT_FALSE(std::filesystem::exists(place / "x.pvs.part"));
+  writeCells(place, {{"inside", "1,0.5,1", "0.1,0.1,0.1"}});
+  EXPECT_EQ(runProgram(place.bake("z.pvs", "--strict-cells --free-side any")).exit_code, 0);
+}
+
+TEST(BakeCommand, OfManyCellsTheFirstFewAreWarnedOf) {
+  const Workplace place;
+  std::vector<OddCell> cells;
+  for (int i = 0; i < 25; ++i) cells.push_back({fmt::format("cell-{}", i), "300,1,1", "0.5,0.5,0.5"});
+  writeCells(place, cells);
+  const ProgramRun run = runProgram(place.bake("x.pvs"));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_TRUE(contains(run, "warning: cell-9 ")) << run.output;
+  EXPECT_FALSE(contains(run, "warning: cell-10 ")) << run.output;
+  EXPECT_TRUE(contains(run, "warning: 15 cells more")) << run.output;
+}
+
+TEST(BakeCommand, WarnsOfCellsThatSeeNothingOrEverything) {
+  const Workplace place;
+  std::ofstream(place / "blocks.obj") << "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n";
+  // Flat cells look along +z: the first away from the triangle, the second towards it.
+  writeCells(place, {{"before", "1,1,1", "1,1,0"}, {"behind", "1,1,-1", "1,1,0"}});
+  ProgramRun run = runProgram(place.bake("x.pvs", "--free-side any"));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_TRUE(contains(run, "warning: before sees nothing\n")) << run.output;
+  EXPECT_TRUE(contains(run, "warning: behind sees everything: every triangle")) << run.output;
+  run = runProgram(place.bake("x.pvs", "--free-side any --strict-cells"));
+  EXPECT_EQ(run.exit_code, 2) << run.output;
+  EXPECT_TRUE(contains(run, "before sees nothing; behind sees everything")) << run.output;
+  EXPECT_TRUE(std::filesystem::exists(place / "x.pvs")) << "what is baked is kept";
 }
 
 TEST(BakeCommand, KeepsWitnessesOnlyWhenAsked) {

@@ -1,5 +1,7 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "core/scene/file_io.h"
 #include "core/scene/generate.h"
 #include "tests/cli/run_program.h"
 #include "tests/scene/files.h"
@@ -60,15 +62,23 @@ TEST(CellsCommand, PlacesAGridAndAPath) {
   const Folder folder;
   const auto scene = (folder / "city.glb").string(), cells = (folder / "cells.json").string();
   ASSERT_EQ(runProgram("scene city --triangles 2000 -o '" + scene + "'").exit_code, 0);
-  const std::string start = "cells '" + scene + "' -o '" + cells + "' ";
+  const std::string start = "cells '" + scene + "' -o '" + cells + "' --overwrite ";
 
   ProgramRun run = runProgram(start + "--grid 8,4,8 --max-height 1");
   ASSERT_EQ(run.exit_code, 0) << run.output;
   const std::vector<ViewCell> grid = loadCells(cells);
   EXPECT_GT(grid.size(), 50u);
-  for (const ViewCell& cell : grid) EXPECT_EQ(cell.size, glm::dvec3(8, 4, 8));
+  for (const ViewCell& cell : grid) {
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_LE(cell.size[axis], axis == 1 ? 4 : 8);
+      EXPECT_GE(cell.size[axis], (axis == 1 ? 4 : 8) - 0.1601) << "4 margins of 0.04 at most";
+    }
+  }
+  run = runProgram(start + "--grid 8,4,8 --max-height 1 --margin 0");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  for (const ViewCell& cell : loadCells(cells)) EXPECT_EQ(cell.size, glm::dvec3(8, 4, 8));
 
-  run = runProgram(start + "--grid 8 --free-side back");
+  run = runProgram(start + "--grid 8 --free-side back --margin 0");
   EXPECT_EQ(run.exit_code, 0) << run.output;
   EXPECT_EQ(loadCells(cells).at(0).size, glm::dvec3(8));
 
@@ -86,6 +96,120 @@ TEST(CellsCommand, PlacesAGridAndAPath) {
   const std::vector<ViewCell> again = loadCells(cells);
   ASSERT_EQ(again.size(), path.size());
   for (size_t i = 0; i < path.size(); ++i) EXPECT_EQ(again[i].center, path[i].center);
+}
+
+/// The inside of a box of 8 x 4 x 6, which a post stands in.
+std::string roomWithAPost(const Folder& folder) {
+  std::string text;
+  auto box = [&text, vertices = 0](std::array<double, 3> low, std::array<double, 3> high) mutable {
+    for (int corner = 0; corner < 8; ++corner) {
+      text += fmt::format("v {} {} {}\n", (corner & 1 ? high : low)[0], (corner & 2 ? high : low)[1],
+                          (corner & 4 ? high : low)[2]);
+    }
+    for (const auto& f :
+         {std::array{1, 2, 4, 3}, {5, 7, 8, 6}, {1, 5, 6, 2}, {3, 4, 8, 7}, {1, 3, 7, 5}, {2, 6, 8, 4}}) {
+      text +=
+          fmt::format("f {} {} {} {}\n", vertices + f[0], vertices + f[1], vertices + f[2], vertices + f[3]);
+    }
+    vertices += 8;
+  };
+  box({0, 0, 0}, {8, 4, 6});
+  box({4.4, 0, 2.5}, {5.4, 4, 3.5});
+  return folder.write("room.obj", text).string();
+}
+
+TEST(CellsCommand, ReplacesOnlyWhenAsked) {
+  const Folder folder;
+  const std::string scene = roomWithAPost(folder);
+  const std::string cells = folder.write("cells.json", "mine").string();
+  expectLine("cells " + scene + " -o " + cells + " --grid 2", 1, "cells.json: is there already");
+  EXPECT_EQ(std::string(readFile(cells).view()), "mine");
+  EXPECT_EQ(runProgram("cells " + scene + " -o " + cells + " --grid 2 --free-side any --overwrite").exit_code,
+            0);
+  EXPECT_GT(loadCells(cells).size(), 10u);
+}
+
+TEST(CellsCommand, WritesToStandardOutputAndNothingElseThere) {
+  const Folder folder;
+  const std::string scene = roomWithAPost(folder);
+  const std::string file = (folder / "cells.json").string(), piped = (folder / "piped.json").string();
+  const std::string grid = " --grid 2 --free-side any";
+  ASSERT_EQ(runProgram("cells " + scene + " -o " + file + grid).exit_code, 0);
+  ProgramRun run =
+      runProgram("cells " + scene + " -o -" + grid + " >" + piped + " 2>/dev/null || exit 9; true");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_EQ(std::string(readFile(piped).view()), std::string(readFile(file).view()));
+  EXPECT_FALSE(std::filesystem::exists("-"));
+  run = runProgram("cells " + scene + " -o -" + grid + " >/dev/full");
+  EXPECT_EQ(run.exit_code, 1) << run.output;
+}
+
+TEST(CellsCommand, BoundsTheGrid) {
+  const Folder folder;
+  const std::string scene = roomWithAPost(folder), cells = (folder / "cells.json").string();
+  const auto place = [&](const std::string& options) {
+    const ProgramRun run =
+        runProgram("cells " + scene + " -o " + cells + " --overwrite --free-side any --margin 0 " + options);
+    EXPECT_EQ(run.exit_code, 0) << run.output;
+    return loadCells(cells);
+  };
+  std::vector<ViewCell> placed = place("--grid 1 --origin 1,0.5,1");
+  EXPECT_EQ(placed[0].name, "grid-0-0-0");
+  EXPECT_EQ(placed[0].center, glm::dvec3(1.5, 1, 1.5));
+  EXPECT_EQ(placed.size(), 3u * (7 * 5 - 4)) << "all but those in the post";
+  placed = place("--grid 1 --origin 1,0.5,1 --count 2 1 1");
+  ASSERT_EQ(placed.size(), 2u);
+  EXPECT_EQ(placed[1].center, glm::dvec3(2.5, 1, 1.5));
+  placed = place("--grid 1 --region 0.5,0.5,0.5 2.5,1.5,1.5");
+  ASSERT_EQ(placed.size(), 2u);
+  EXPECT_EQ(placed[1].center, glm::dvec3(2, 1, 1));
+
+  const std::string start = "cells " + scene + " -o " + (folder / "new.json").string() + " ";
+  expectLine(start + "--grid 1 --region 1,1,1 0,2,2", 2, "region");
+  expectLine(start + "--grid 1 --region 1,1,1 0,2", 2, "--region");
+  expectLine(start + "--grid 1 --count 1 2", 2, "--count");
+  expectLine(start + "--grid 1 --count 1 0 2", 2, "1 or more");
+  expectLine(start + "--grid 1 --count 1 -1 2", 2, "--count");
+  expectLine(start + "--grid 1 --origin 9,0,0", 2, "lower the origin");
+  expectLine(start + "--grid 1 --margin 0.2", 2, "an eighth");
+  expectLine(start + "--path 1,1,1 2,1,1 --count 1 1 1", 2, "--grid");
+  expectLine(start + "--grid 1 --width 2", 2, "--path");
+}
+
+TEST(CellsCommand, PathsKeepClearOfTrianglesOrSayWhichCannot) {
+  const Folder folder;
+  const std::string scene = roomWithAPost(folder), cells = (folder / "cells.json").string();
+  const std::string path =
+      "cells " + scene + " -o " + cells + " --overwrite --path 1,1,3 7,1,3 --width 1 --height 2 --length 2 ";
+  ProgramRun run = runProgram(path);
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_NE(run.output.find("warning: path-2 is left out: "), std::string::npos) << run.output;
+  ASSERT_EQ(loadCells(cells).size(), 2u);
+  EXPECT_EQ(loadCells(cells)[1].name, "path-3");
+  EXPECT_NEAR(loadCells(cells)[1].size.z, 7 - 5.4 - 0.01, 1e-6) << "beside the post";
+  EXPECT_NEAR(loadCells(cells)[0].size.y, 1.99, 1e-9) << "above the floor";
+  run = runProgram(path + "--margin 0");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_EQ(loadCells(cells).size(), 3u);
+  expectLine("cells " + scene + " -o " + cells + " --overwrite --path 5,1,2.6 5,1,3.4 --width 2", 1,
+             "path-1");
+}
+
+TEST(CellsCommand, AGridShowsProgressAndCanBeStopped) {
+  const Folder folder;
+  const std::string scene = roomWithAPost(folder), cells = (folder / "cells.json").string();
+  const std::string log = (folder / "log").string();
+  const auto text = [&] { return std::string(readFile(log).view()); };
+  test::Running grid("cells " + scene + " -o " + cells + " --grid 0.028 --free-side any", log);
+  for (int i = 0; i < 1200 && (!std::filesystem::exists(log) || text().find("grid: ") == std::string::npos);
+       ++i) {
+    ::usleep(25'000);
+  }
+  grid.send(SIGINT);
+  EXPECT_EQ(grid.wait(), 130) << text();
+  EXPECT_NE(text().find(" boxes, "), std::string::npos) << text();
+  EXPECT_NE(text().find("stopped: no cells are written"), std::string::npos) << text();
+  EXPECT_FALSE(std::filesystem::exists(cells));
 }
 
 TEST(CellsCommand, SaysWhatIsWrong) {

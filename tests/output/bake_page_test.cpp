@@ -86,6 +86,10 @@ TEST(BakePage, HasColumnsForWhatSomeCellsHave) {
   }
   EXPECT_FALSE(shows(report, "error at most"));
   EXPECT_FALSE(shows(report, "contained"));
+  EXPECT_TRUE(shows(report, "warnings")) << "the second set is empty";
+  report.cells[1].pvs_size = 3;
+  EXPECT_FALSE(shows(report, "warnings"));
+  EXPECT_EQ(pageOf(report).find("may not be meant so"), std::string::npos);
   report.cells[0].stats.bound_tests = 2;
   report.cells[0].stats.error_bound = 0.00125;
   report.cells[1].stats.contained_triangles = 7654;
@@ -93,6 +97,11 @@ TEST(BakePage, HasColumnsForWhatSomeCellsHave) {
   EXPECT_TRUE(shows(report, "contained"));
   EXPECT_NE(pageOf(report).find("<td>0.00125</td><td>0</td></tr>"), std::string::npos);
   EXPECT_NE(pageOf(report).find("<td>not tested</td><td>7654</td></tr>"), std::string::npos);
+  report.warnings = {{{CellVerdict::kInSolid, "lies in a wall"}, {CellVerdict::kOutside, "far"}}};
+  EXPECT_TRUE(shows(report, "warnings"));
+  EXPECT_NE(pageOf(report).find("<td>0</td><td>in solid, outside</td></tr>"), std::string::npos);
+  EXPECT_NE(pageOf(report).find("<td>7654</td><td></td></tr>"), std::string::npos);
+  EXPECT_NE(pageOf(report).find("lies in a wall"), std::string::npos) << "below the table";
 }
 
 TEST(BakePage, ListsTheParametersOfTheMethod) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -9,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/report/export.h"
+#include "core/report/text.h"
 #include "tests/output/example_pvs.h"
 
 namespace sightline {
@@ -25,6 +27,7 @@ BakeReport exampleReport() {
   report.tree = TreeSummary{0.5, 12.5, 9, 10, 20, 1100, 9000};
   report.set = "array";
   report.cells = summarize(examplePvs());
+  report.warnings = {{{CellVerdict::kMeetsTriangles, "meets 12 triangles", 12}}, {}, {}};
   report.planned_cells = 3;
   report.resumed_cells = 1;
   return report;
@@ -77,6 +80,32 @@ TEST(Report, SaysWhatWasDone) {
   EXPECT_EQ(cell["error_bound_95"], 0.0625);
   EXPECT_EQ(cell["error_bound_rays"], 1u << 20);
   EXPECT_EQ(cell["error_bound_tests"], 3);
+  ASSERT_EQ(cell["warnings"].size(), 1u);
+  EXPECT_EQ(cell["warnings"][0]["verdict"], "meets triangles");
+  EXPECT_EQ(cell["warnings"][0]["text"], "meets 12 triangles");
+  EXPECT_EQ(cell["warnings"][0]["met_triangles"], 12);
+  ASSERT_EQ(report["cells"][1]["warnings"].size(), 1u) << "its set is empty";
+  EXPECT_EQ(report["cells"][1]["warnings"][0]["verdict"], "sees nothing");
+}
+
+TEST(Report, SeeingAllThatHasAnAreaIsSeeingEverything) {
+  BakeReport report = exampleReport();
+  report.cells[0].pvs_size = uint32_t(report.scene.triangles - report.scene.degenerate);
+  ASSERT_EQ(warningsOf(report, 0).size(), 2u);
+  EXPECT_EQ(warningsOf(report, 0)[1].verdict, CellVerdict::kSeesEverything);
+  report.cells[0].pvs_size--;
+  EXPECT_EQ(warningsOf(report, 0).size(), 1u);
+}
+
+TEST(CellTable, NamesTheVerdicts) {
+  const std::vector<CellSummary> cells = summarize(examplePvs());
+  const std::vector<std::vector<CellWarning>> warnings = {
+      {{CellVerdict::kMeetsTriangles, "", 12}, {CellVerdict::kInSolid, ""}}, {}};
+  const std::string table = cellTable(cells, 1000, warnings);
+  EXPECT_NE(table.find("  warning: meets triangles, in solid\n"), std::string::npos) << table;
+  EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
+  EXPECT_EQ(table.find("warning"), table.rfind("warning"));
+  EXPECT_EQ(cellTable(cells, 1000).find("warning"), std::string::npos);
 }
 
 TEST(Report, WithoutADeviceItSaysNull) {
@@ -103,8 +132,9 @@ TEST(Report, EveryKeyIsDocumentedAndEveryDocumentedKeyIsThere) {
   collectWords("## `sightline bake --report R.json`", documented);
   collectWords("## `sightline export --format json`", documented);
   // Words in backquotes that are no keys: commands and values.
-  for (const char* word :
-       {"--scene", "array", "hash", "converged", "ray limit", "time limit", "target error"}) {
+  for (const char* word : {"--scene", "array", "hash", "converged", "ray limit", "time limit", "target error",
+                           "meets triangles", "in solid", "outside", "too large", "too small", "sees nothing",
+                           "sees everything", "--strict-cells", "--free-side back", "any"}) {
     EXPECT_EQ(documented.count(word), 1u) << word;
     if (std::string(word) != "hash") documented.erase(word);
   }

@@ -43,12 +43,14 @@ TEST(CellsFile, ErrorsNameThePlace) {
       {"", "cells.json: is empty, expected {\"cells\":[...]}"},
       {"[]", "cells.json: expected an object {\"cells\":[...]}"},
       {"{}", "cells.json: top level: key \"cells\" is missing"},
-      {R"({"cells":[],"more":1})", R"(cells.json: top level: unknown key "more", expected one of ["cells"])"},
+      {R"({"cells":[],"more":1})", R"(cells.json: top level: unknown key "more", expected one of ["cells"], )"
+                                   R"(or x-... for keys of other programs)"},
       {R"({"cells":{}})", "cells.json: cells: expected a list"},
       {R"({"cells":[]})", "cells.json: cells: is empty; at least one view cell is needed"},
       {R"({"cells":[7]})", "cells.json: cells[0]: expected an object"},
       {oneCell(good + R"(,"siz":[1,1,1])"),
-       R"(cells.json: cells[0]: unknown key "siz", expected one of ["center","name","rotation","size"])"},
+       R"(cells.json: cells[0]: unknown key "siz", expected one of ["center","name","rotation","size"], )"
+       R"(or x-... for keys of other programs)"},
       {oneCell(R"("name":"a","size":[1,1,1])"), R"(cells.json: cells[0]: key "center" is missing)"},
       {oneCell(R"("name":"a","center":[1,1,1])"), R"(cells.json: cells[0]: key "size" is missing)"},
       {oneCell(R"("center":[1,1,1],"size":[1,1,1])"), R"(cells.json: cells[0]: key "name" is missing)"},
@@ -81,6 +83,22 @@ TEST(CellsFile, ErrorsNameThePlace) {
       {oneCell(good + R"(,"name":"b")"), R"(cells.json: key "name" occurs twice in one object)"},
   };
   for (const auto& [text, message] : cases) EXPECT_EQ(cellsError(text), message) << text;
+}
+
+TEST(CellsFile, KeysOfOtherProgramsArePassedOver) {
+  const Folder folder;
+  const auto file = folder.write("c.json", R"({"x-editor":{"version":[1,{"cells":0}]},"cells":[
+    {"name":"a","center":[1,2,3],"size":[4,5,6],"x-tags":["street",7],"x-":null}],"x-cells":[]})");
+  const std::vector<ViewCell> cells = loadCells(file);
+  ASSERT_EQ(cells.size(), 1u);
+  EXPECT_EQ(cells[0], (ViewCell{"a", {1, 2, 3}, {4, 5, 6}, glm::dvec3(0)}));
+  for (const char* key : {"x", "X-tags", "xtags", "-x-tags", ""}) {
+    EXPECT_NE(
+        cellsError(oneCell(std::string(R"("name":"a","center":[1,2,3],"size":[1,1,1],")") + key + R"(":0)"))
+            .find("unknown key"),
+        std::string::npos)
+        << key;
+  }
 }
 
 TEST(CellsFile, SyntaxErrorsNameLineAndColumn) {
