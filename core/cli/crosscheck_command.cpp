@@ -31,10 +31,10 @@ struct CrosscheckCommand {
 };
 
 /// Bakes every cell on the first device and on each other one, says and returns how the sets differ, of as
-/// many cells as were done before a stop signal.
+/// many cells as were done before a stop signal. Counts in the report what is wrong in the sets.
 Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const Bvh& bvh,
                      const std::vector<ViewCell>& cells, std::span<Device* const> devices,
-                     const StopSignal& stop) {
+                     const StopSignal& stop, CrosscheckReport& report) {
   StatusLine status;
   const Judge judge(scene, bvh);
   BakeParams params;
@@ -42,6 +42,7 @@ Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const
   params.validation_rays = 0;
   params.seed = command.options.seed;
   Json pairs = Json::array();
+  report.wrong_in_sets.assign(devices.size(), 0);
   for (size_t d = 1; d < devices.size() && stop.exitCode() == 0; ++d) {
     const std::string first = devices[0]->info().id, other = devices[d]->info().id;
     std::vector<PvsDifference> differences;
@@ -60,6 +61,10 @@ Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const
       // The cells before it are shown.
     }
     status.end();
+    for (const PvsDifference& cell : differences) {
+      if (d == 1) report.wrong_in_sets[0] += cell.faults(0);  // its set is the same in each pair
+      report.wrong_in_sets[d] += cell.faults(1);
+    }
     std::fputs(pvsDifferenceTable(first, other, differences).c_str(), stdout);
     pairs.push_back(pvsDifferenceJson(first, other, differences));
   }
@@ -98,7 +103,7 @@ void run(const CrosscheckCommand& command) {
 
   StopSignal stop;
   StatusLine status;
-  const CrosscheckReport report = crosscheck(
+  CrosscheckReport report = crosscheck(
       scene, bvh, cells, pointers, command.options,
       [&](RayKind kind, uint64_t done, uint64_t due) {
         status.show([&] {
@@ -112,7 +117,7 @@ void run(const CrosscheckCommand& command) {
              shortDuration(report.judge_seconds));
   Json json = crosscheckJson(head, report);
   if (command.pvs && stop.exitCode() == 0) {
-    json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers, stop);
+    json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers, stop, report);
   }
   json["complete"] = stop.exitCode() == 0;
   if (!command.report.empty()) saveText(jsonText(json), command.report);
@@ -132,7 +137,8 @@ void declareLimits(CLI::App& command, CrosscheckLimits& limits) {
         ->type_name("N")
         ->group("Limits of any one device (else exit code 3)");
   };
-  count("--max-wrong", limits.wrong, "answers that the judge finds wrong");
+  count("--max-wrong", limits.wrong,
+        "answers that the judge finds wrong, and with --pvs triangles not of their cell");
   count("--max-missed", limits.missed, "hits that the judge finds lost");
   count("--max-rounded", limits.rounded, "answers that are right up to rounding only");
   count("--max-differences", limits.differences, "other triangles than the first device's");

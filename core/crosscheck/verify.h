@@ -40,7 +40,8 @@ struct CellProofs {
   std::array<uint64_t, kFaults> faults{};  ///< of the disproved triangles
   std::vector<OpenProof> open;             ///< by triangle
 
-  /// Proven, improved or proven by a point, of all that have a witness; 1 where none has.
+  /// Proven, improved or proven by a point, of all that have a witness or are disproved; 1 where there are
+  /// none.
   double provenShare() const;
 };
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/crosscheck/crosscheck_report.h"
+#include "core/crosscheck/float_text.h"
 #include "core/crosscheck/verify.h"
 #include "core/report/text.h"
 
