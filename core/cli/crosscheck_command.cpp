@@ -12,6 +12,7 @@
 #include "core/crosscheck/crosscheck_report.h"
 #include "core/crosscheck/place.h"
 #include "core/crosscheck/pvs_difference.h"
+#include "core/device/trace_only_device.h"
 #include "core/error.h"
 #include "core/report/status_line.h"
 #include "core/report/text.h"
@@ -90,6 +91,9 @@ void run(const CrosscheckCommand& command) {
           kExitUsage);
     }
     pointers.push_back(devices.back().get());
+    if (!command.pvs || canBake(*pointers.back())) continue;
+    throw Error(fmt::format("--pvs: {} traces rays only and has no sets; leave it out of --devices", name),
+                kExitUsage);
   }
 
   CrosscheckHead head{SL_VERSION,      summarize(scene, command.scene.filename().string(), hashScene(scene)),

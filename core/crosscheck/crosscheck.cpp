@@ -9,6 +9,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/device/cpu_device.h"
+#include "core/device/trace_only_device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/shared/ray.h"
 
@@ -242,6 +244,11 @@ CrosscheckReport crosscheck(const Scene& scene, const Bvh& bvh, std::span<const 
                             std::span<Device* const> devices, const CrosscheckOptions& options,
                             const CrosscheckProgress& progress, const std::atomic<bool>* stop) {
   Crosscheck check(scene, bvh, devices, options);
+  // A bake finds the rays' targets: on the first device that can.
+  const auto baker =
+      std::find_if(devices.begin(), devices.end(), [](const Device* device) { return canBake(*device); });
+  const auto own = baker == devices.end() ? makeCpuDevice(scene, bvh, {}) : nullptr;
+  Device& sampler = own ? *own : **baker;
   const uint64_t due = options.rays * check.kinds();
   uint64_t done = 0;
   const auto report = [&](RayKind kind) {
@@ -253,7 +260,7 @@ CrosscheckReport crosscheck(const Scene& scene, const Bvh& bvh, std::span<const 
       const uint64_t begin = options.rays * c / cells.size(), end = options.rays * (c + 1) / cells.size();
       if (begin == end) continue;
       report(check.kind(0));
-      const RayMaker maker(scene, cells[c], c, *devices[0], options.seed, end - begin, stop);
+      const RayMaker maker(scene, cells[c], c, sampler, options.seed, end - begin, stop);
       for (size_t k = 0; k < check.kinds(); ++k) {
         for (uint64_t first = 0; first < end - begin; first += options.batch_rays) {
           const auto count = size_t(std::min<uint64_t>(options.batch_rays, end - begin - first));
