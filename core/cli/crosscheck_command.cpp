@@ -12,6 +12,7 @@
 #include "core/crosscheck/crosscheck_report.h"
 #include "core/crosscheck/place.h"
 #include "core/crosscheck/pvs_difference.h"
+#include "core/crosscheck/reproduce.h"
 #include "core/device/trace_only_device.h"
 #include "core/error.h"
 #include "core/report/status_line.h"
@@ -22,14 +23,51 @@ namespace sightline {
 namespace {
 
 struct CrosscheckCommand {
-  std::filesystem::path scene, cells, report;
+  std::filesystem::path scene, cells, report, reproduce;
   std::vector<std::string> devices, kinds;
   double scale = 1, move = 0;
   CrosscheckOptions options;
   CrosscheckLimits limits;
-  bool repair = false, spatial_splits = false, pvs = false;
+  bool repair = false, spatial_splits = false, pvs = false, overwrite = false;
   uint32_t n_rand = 1'000'000;
 };
+
+/// Disagreements that are written in full.
+constexpr uint32_t kReproducers = 100;
+
+/// Writes a file for each of the disagreements that the report holds in full.
+void writeReproducers(const CrosscheckCommand& command, const Scene& scene, const Bvh& bvh,
+                      const std::vector<ViewCell>& cells, const CrosscheckReport& report,
+                      const StopSignal& stop) {
+  const size_t removed = removeReproducers(command.reproduce);
+  if (removed > 0) fmt::print("{}: {} of an earlier run removed\n", command.reproduce.string(), removed);
+  const Judge judge(scene, bvh);
+  ReproducerHead head;
+  head.scene_name = command.scene.filename().string();
+  for (const DeviceInfo& device : report.devices) head.devices.push_back(device.id);
+  if (command.options.rounding.steps != RoundingLimit{}.steps) {
+    head.options = fmt::format(" --rounding {}", command.options.rounding.steps);
+  }
+  const auto maker = [&](size_t d, const Scene& part, const Bvh& tree) {
+    return makeDevice(report.devices[d].id, part, tree);
+  };
+  StatusLine status;
+  size_t written = 0, not_alone = 0;
+  for (const CheckedRay& ray : report.disagreements.rays) {
+    if (stop.exitCode() != 0) break;
+    status.show([&] { return fmt::format("writing disagreement {}", written + 1); });
+    const Reproducer its = findReproducer(scene, judge, ray.answers, maker, command.options.rounding);
+    head.what = fmt::format("{} ray {} of cell {}", rayKindName(ray.kind), ray.number, cells[ray.cell].name);
+    head.file_name = reproducerName(written++);
+    saveText(reproducerText(head, its), command.reproduce / head.file_name);
+    not_alone += !its.reproduces;
+  }
+  status.end();
+  fmt::print("{}: {}, {} of them more than rounding: {} written, of which {} on the few triangles\n",
+             command.reproduce.string(), counted(report.disagreements.count, "disagreement"),
+             report.disagreements.illegal, written,
+             not_alone == 1 ? "1 does not reproduce" : fmt::format("{} do not reproduce", not_alone));
+}
 
 /// Bakes every cell on the first device and on each other one, says and returns how the sets differ, of as
 /// many cells as were done before a stop signal. Counts in the report what is wrong in the sets.
@@ -74,6 +112,9 @@ Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const
 
 void run(const CrosscheckCommand& command) {
   requireSeparate(std::array{command.report}, std::array{command.scene, command.cells});
+  if (!command.reproduce.empty()) {
+    prepareReproducerFolder(command.reproduce, command.overwrite, std::array{command.scene, command.cells});
+  }
   if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
   Scene scene = loadScene(command.scene, {.repair = command.repair});
   std::vector<ViewCell> cells = loadCells(command.cells);
@@ -125,6 +166,7 @@ void run(const CrosscheckCommand& command) {
   }
   json["complete"] = stop.exitCode() == 0;
   if (!command.report.empty()) saveText(jsonText(json), command.report);
+  if (!command.reproduce.empty()) writeReproducers(command, scene, bvh, cells, report, stop);
   if (stop.exitCode() != 0) {
     fmt::print("stopped: the table holds what was judged by then\n");
     throw ExitCode{stop.exitCode()};
@@ -197,6 +239,11 @@ void addCrosscheckCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--report", options->report, "write everything as JSON (docs/report.md)")
       ->type_name("R.json");
+  command
+      ->add_option("--reproduce", options->reproduce,
+                   "write for each of the first 100 disagreements the triangles around the ray, as OBJ")
+      ->type_name("DIR");
+  command->add_flag("--overwrite", options->overwrite, "replace reproducers of an earlier run");
   command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
   command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");
   command->add_flag("--pvs", options->pvs,
@@ -212,6 +259,7 @@ void addCrosscheckCommand(CLI::App& app) {
     if (options->pvs && options->devices.size() < 2) {
       throw CLI::ValidationError("--pvs", "compares the sets of two devices; name another in --devices");
     }
+    if (!options->reproduce.empty()) options->options.keep_disagreements = kReproducers;
     for (const std::string& name : options->kinds) {
       const auto kind = rayKindOf(name);
       if (!kind) throw CLI::ValidationError("--kinds", "no kind of ray \"" + name + "\"; see --help");

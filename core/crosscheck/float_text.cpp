@@ -14,6 +14,7 @@ namespace {
 constexpr size_t kBitsDigits = 8;
 
 std::optional<float> readHexFloat(std::string_view digits, bool negative) {
+  if (digits.starts_with('-')) return std::nullopt;
   float value = 0;
   const auto [end, failure] =
       std::from_chars(digits.data(), digits.data() + digits.size(), value, std::chars_format::hex);
