@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -13,7 +14,6 @@
 #include "core/crosscheck/place.h"
 #include "core/crosscheck/pvs_difference.h"
 #include "core/crosscheck/reproduce.h"
-#include "core/device/trace_only_device.h"
 #include "core/error.h"
 #include "core/report/status_line.h"
 #include "core/report/text.h"
@@ -32,16 +32,21 @@ struct CrosscheckCommand {
   uint32_t n_rand = 1'000'000;
 };
 
+/// What all devices hold.
+struct Level {
+  const Scene& scene;
+  const Bvh& bvh;
+  const std::vector<ViewCell>& cells;
+};
+
 /// Disagreements that are written in full.
 constexpr uint32_t kReproducers = 100;
 
 /// Writes a file for each of the disagreements that the report holds in full.
-void writeReproducers(const CrosscheckCommand& command, const Scene& scene, const Bvh& bvh,
-                      const std::vector<ViewCell>& cells, const CrosscheckReport& report,
-                      const StopSignal& stop) {
+void writeReproducers(const CrosscheckCommand& command, const Level& level, const CrosscheckReport& report) {
   const size_t removed = removeReproducers(command.reproduce);
   if (removed > 0) fmt::print("{}: {} of an earlier run removed\n", command.reproduce.string(), removed);
-  const Judge judge(scene, bvh);
+  const Judge judge(level.scene, level.bvh);
   ReproducerHead head;
   head.scene_name = command.scene.filename().string();
   for (const DeviceInfo& device : report.devices) head.devices.push_back(device.id);
@@ -54,10 +59,10 @@ void writeReproducers(const CrosscheckCommand& command, const Scene& scene, cons
   StatusLine status;
   size_t written = 0, not_alone = 0;
   for (const CheckedRay& ray : report.disagreements.rays) {
-    if (stop.exitCode() != 0) break;
     status.show([&] { return fmt::format("writing disagreement {}", written + 1); });
-    const Reproducer its = findReproducer(scene, judge, ray.answers, maker, command.options.rounding);
-    head.what = fmt::format("{} ray {} of cell {}", rayKindName(ray.kind), ray.number, cells[ray.cell].name);
+    const Reproducer its = findReproducer(level.scene, judge, ray.answers, maker, command.options.rounding);
+    head.what =
+        fmt::format("{} ray {} of cell {}", rayKindName(ray.kind), ray.number, level.cells[ray.cell].name);
     head.file_name = reproducerName(written++);
     saveText(reproducerText(head, its), command.reproduce / head.file_name);
     not_alone += !its.reproduces;
@@ -71,11 +76,11 @@ void writeReproducers(const CrosscheckCommand& command, const Scene& scene, cons
 
 /// Bakes every cell on the first device and on each other one, says and returns how the sets differ, of as
 /// many cells as were done before a stop signal. Counts in the report what is wrong in the sets.
-Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const Bvh& bvh,
-                     const std::vector<ViewCell>& cells, std::span<Device* const> devices,
+Json comparePvsOfAll(const CrosscheckCommand& command, const Level& level, std::span<Device* const> devices,
                      const StopSignal& stop, CrosscheckReport& report) {
   StatusLine status;
-  const Judge judge(scene, bvh);
+  const std::vector<ViewCell>& cells = level.cells;
+  const Judge judge(level.scene, level.bvh);
   BakeParams params;
   params.n_rand = command.n_rand;
   params.validation_rays = 0;
@@ -93,7 +98,7 @@ Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const
                                shortCount(progress.rays), progress.pvs_size);
           });
         };
-        differences.push_back(comparePvs(judge, scene, cells[c], c, *devices[0], *devices[d], params,
+        differences.push_back(comparePvs(judge, level.scene, cells[c], c, *devices[0], *devices[d], params,
                                          command.options.rounding, {.progress = show, .stop = stop.flag()}));
       }
     } catch (const Interrupted&) {
@@ -132,9 +137,6 @@ void run(const CrosscheckCommand& command) {
           kExitUsage);
     }
     pointers.push_back(devices.back().get());
-    if (!command.pvs || canBake(*pointers.back())) continue;
-    throw Error(fmt::format("--pvs: {} traces rays only and has no sets; leave it out of --devices", name),
-                kExitUsage);
   }
 
   CrosscheckHead head{SL_VERSION,      summarize(scene, command.scene.filename().string(), hashScene(scene)),
@@ -162,11 +164,11 @@ void run(const CrosscheckCommand& command) {
              shortDuration(report.judge_seconds));
   Json json = crosscheckJson(head, report);
   if (command.pvs && stop.exitCode() == 0) {
-    json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers, stop, report);
+    json["pvs"] = comparePvsOfAll(command, {scene, bvh, cells}, pointers, stop, report);
   }
   json["complete"] = stop.exitCode() == 0;
   if (!command.report.empty()) saveText(jsonText(json), command.report);
-  if (!command.reproduce.empty()) writeReproducers(command, scene, bvh, cells, report, stop);
+  if (!command.reproduce.empty()) writeReproducers(command, {scene, bvh, cells}, report);
   if (stop.exitCode() != 0) {
     fmt::print("stopped: the table holds what was judged by then\n");
     throw ExitCode{stop.exitCode()};
@@ -258,6 +260,11 @@ void addCrosscheckCommand(CLI::App& app) {
     requireDistinct("--kinds", options->kinds);
     if (options->pvs && options->devices.size() < 2) {
       throw CLI::ValidationError("--pvs", "compares the sets of two devices; name another in --devices");
+    }
+    const auto& devices = options->devices;
+    if (options->pvs && std::find(devices.begin(), devices.end(), "embree") != devices.end()) {
+      throw CLI::ValidationError("--pvs",
+                                 "embree traces rays only and has no sets; leave it out of --devices");
     }
     if (!options->reproduce.empty()) options->options.keep_disagreements = kReproducers;
     for (const std::string& name : options->kinds) {

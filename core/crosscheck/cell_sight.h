@@ -41,6 +41,8 @@ class CellSight {
  public:
   explicit CellSight(const ViewCell& cell);
 
+  const CellFrame& frame() const { return frame_; }
+
   /// Whether a ray that begins here begins on the cell or in it.
   bool beginsOnCell(const glm::dvec3& origin) const;
   /// Whether the cell looks along the direction.

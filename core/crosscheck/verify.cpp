@@ -8,7 +8,6 @@
 
 #include "core/crosscheck/ray_random.h"
 #include "core/judge/seen_triangle.h"
-#include "core/scene/cell_frame.h"
 #include "core/scene/contained.h"
 
 namespace sightline {
@@ -42,11 +41,10 @@ struct Better {
 /// target and origin is a float, exactly.
 class BetterWitness {
  public:
-  BetterWitness(const Judge& judge, const ViewCell& cell, const CellSight& sight, uint32_t triangle,
-                const Witness& witness, const VerifyOptions& options)
+  BetterWitness(const Judge& judge, const CellSight& sight, uint32_t triangle, const Witness& witness,
+                const VerifyOptions& options)
       : judge_(judge),
         sight_(sight),
-        frame_(cellFrame(cell)),
         triangle_(triangle),
         shape_(judge.corners(triangle)),
         witness_(witness),
@@ -130,8 +128,8 @@ class BetterWitness {
 
   /// A place in the cell with few digits, the more the later.
   glm::vec3 anyPlace(RayRandom& random, uint32_t i) const {
-    const glm::dvec3 place = frame_.toWorld(frame_.half_size * glm::dvec3(random.point()));
-    const double largest = maxAbs(frame_.half_size);
+    const glm::dvec3 place = sight_.frame().toWorld(sight_.frame().half_size * glm::dvec3(random.point()));
+    const double largest = maxAbs(sight_.frame().half_size);
     const double grid = std::exp2(std::floor(std::log2(largest)) - kFewestDigits - i % kDigitChoices);
     glm::dvec3 rounded = glm::round(place / grid) * grid;
     for (int axis = 0; axis < 3; ++axis) {  // a flat cell's own plane must not be left
@@ -150,7 +148,6 @@ class BetterWitness {
 
   const Judge& judge_;
   const CellSight& sight_;
-  CellFrame frame_;
   uint32_t triangle_;
   JudgeTriangle shape_;
   const Witness& witness_;
@@ -160,8 +157,8 @@ class BetterWitness {
 };
 
 /// Judges one witness that the cell's definition allows, and replaces it by a better one.
-OpenProof judgeWitness(const Judge& judge, const ViewCell& cell, const CellSight& sight, uint32_t triangle,
-                       Witness& witness, const VerifyOptions& options) {
+OpenProof judgeWitness(const Judge& judge, const CellSight& sight, uint32_t triangle, Witness& witness,
+                       const VerifyOptions& options) {
   OpenProof result{triangle, Proof::kDisproved, Fault::kNotMet, witness, 0, {}};
   const Ray ray = rayOf(witness);
   const ExactHit exact = judge.nearest(judgeRay(ray));
@@ -176,7 +173,7 @@ OpenProof judgeWitness(const Judge& judge, const ViewCell& cell, const CellSight
   result.steps_beside = ruling.steps_beside;
   if (ruling.verdict != Verdict::kRounded) return result;
   result.fault = Fault::kNone;
-  const auto better = BetterWitness(judge, cell, sight, triangle, witness, options).find();
+  const auto better = BetterWitness(judge, sight, triangle, witness, options).find();
   result.proof = !better ? Proof::kRounded : (better->floats ? Proof::kImproved : Proof::kPoint);
   if (better && better->floats) {
     witness = better->witness;
@@ -215,7 +212,7 @@ CellProofs verifyCell(const Judge& judge, const Scene& scene, CellPvs& pvs, cons
       const Proof proof = fault == Fault::kNone ? Proof::kContained : Proof::kDisproved;
       findings[i] = {triangle, proof, fault, pvs.witnesses[i], 0, {}};
     } else {
-      findings[i] = judgeWitness(judge, pvs.cell, sight, triangle, pvs.witnesses[i], options);
+      findings[i] = judgeWitness(judge, sight, triangle, pvs.witnesses[i], options);
     }
   });
 
