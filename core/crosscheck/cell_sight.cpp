@@ -14,6 +14,9 @@ constexpr double kOriginRounding = 0x1p-20;
 /// Rounding of a direction and of a face's axes, a share of the direction: components err by some 4 * 2^-24
 /// of what they are the sum of.
 constexpr double kDirectionRounding = 0x1p-20;
+/// Rounding of a hit, a share of the distance: the 16 float steps of RoundingLimit. What a ray meets behind
+/// the plane by less than that is left to its witness, which cannot meet it exactly.
+constexpr double kHitRounding = 0x1p-20;
 
 double sum(const glm::dvec3& v) {
   return v.x + v.y + v.z;
@@ -60,7 +63,7 @@ bool CellSight::isBehind(const JudgeTriangle& triangle) const {
   if (!flat_) return false;
   const auto behind = [&](const glm::dvec3& corner) {
     const double farthest = maxAbs(corner - frame_.center) + glm::length(frame_.half_size);
-    return frame_.toLocal(corner).z <= -(slack_.z + tilt_ * farthest);
+    return frame_.toLocal(corner).z < -(slack_.z + (tilt_ + kHitRounding) * farthest);
   };
   return behind(triangle.a) && behind(triangle.b) && behind(triangle.c);
 }

@@ -11,7 +11,7 @@ namespace sightline {
 /// What is wrong with a triangle of a set. The first four follow from the definition of the view cell alone.
 enum class Fault : uint8_t {
   kNone,
-  kBehind,     ///< no part of it lies before the plane of its flat cell
+  kBehind,     ///< all of it lies behind the plane of its flat cell
   kNoRay,      ///< its witness has no direction, or is not of finite numbers
   kOffCell,    ///< its witness does not begin on the cell
   kBackwards,  ///< its witness leaves its flat cell on the side that does not look
@@ -47,7 +47,8 @@ class CellSight {
   bool beginsOnCell(const glm::dvec3& origin) const;
   /// Whether the cell looks along the direction.
   bool looksAlong(const glm::dvec3& direction) const;
-  /// Whether no ray of the cell can meet the triangle since all of it lies behind the cell's plane, or in it.
+  /// Whether all of the triangle lies behind the plane of a flat cell, by more than rounding: no ray of the
+  /// cell can meet it.
   bool isBehind(const JudgeTriangle& triangle) const;
 
   /// What the definition has against a triangle of the set and its witness, if any.

@@ -118,12 +118,13 @@ TEST(Verify, AFlatCellHasNothingBehindIt) {
   scene.pvs.witnesses[2].origin.z = scene.pvs.witnesses[0].origin.z = -1e-6f;
   EXPECT_EQ(scene.verify().faults[size_t(Fault::kOffCell)], 2u) << "the rays begin behind the cell";
 
-  // Turned about x: the floor is behind, and the step in the plane is not seen either.
+  // Turned about x: what was behind is seen. The step in the plane is seen from neither side.
   scene.pvs.cell.rotation = {180, 0, 0};
   scene.pvs.triangles = {0, 1, 3};
   scene.pvs.witnesses = {to({0, 0, 9}), to({0, 0, -9}), to({3.5f, 0, 0})};
   proofs = scene.verify();
-  EXPECT_EQ(proofs.faults[size_t(Fault::kBehind)], 2u) << verifyTable({proofs});
+  EXPECT_EQ(proofs.faults[size_t(Fault::kBehind)], 1u) << verifyTable({proofs});
+  EXPECT_EQ(proofs.faults[size_t(Fault::kBackwards)], 1u) << "along the plane";
   EXPECT_EQ(count(proofs, Proof::kProven), 1u);
 }
 
@@ -136,7 +137,7 @@ TEST(Verify, TakesOutWhatIsDisproved) {
                          {vec3(0), vec3(0), kStageContained},
                          {vec3(0), vec3(0), kStageContained}};
   scene.pvs.stats.contained_triangles = 2;
-  removeDisproved(scene.verify(), scene.pvs);
+  removeDisproved(scene.verify(), scene.pvs);  // 2 and 3 do not meet the cell
   EXPECT_EQ(scene.pvs.triangles, std::vector<uint32_t>{0});
   ASSERT_EQ(scene.pvs.witnesses.size(), 1u);
   EXPECT_EQ(scene.pvs.witnesses[0].direction, vec3(0, 0, 9) - origin);
