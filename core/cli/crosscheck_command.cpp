@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "core/crosscheck/crosscheck_report.h"
 #include "core/crosscheck/place.h"
 #include "core/crosscheck/pvs_difference.h"
+#include "core/crosscheck/reproduce.h"
 #include "core/error.h"
 #include "core/report/status_line.h"
 #include "core/report/text.h"
@@ -21,27 +23,70 @@ namespace sightline {
 namespace {
 
 struct CrosscheckCommand {
-  std::filesystem::path scene, cells, report;
+  std::filesystem::path scene, cells, report, reproduce;
   std::vector<std::string> devices, kinds;
   double scale = 1, move = 0;
   CrosscheckOptions options;
   CrosscheckLimits limits;
-  bool repair = false, spatial_splits = false, pvs = false;
+  bool repair = false, spatial_splits = false, pvs = false, overwrite = false;
   uint32_t n_rand = 1'000'000;
 };
 
-/// Bakes every cell on the first device and on each other one, says and returns how the sets differ, of as
-/// many cells as were done before a stop signal.
-Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const Bvh& bvh,
-                     const std::vector<ViewCell>& cells, std::span<Device* const> devices,
-                     const StopSignal& stop) {
+/// What all devices hold.
+struct Level {
+  const Scene& scene;
+  const Bvh& bvh;
+  const std::vector<ViewCell>& cells;
+};
+
+/// Disagreements that are written in full.
+constexpr uint32_t kReproducers = 100;
+
+/// Writes a file for each of the disagreements that the report holds in full.
+void writeReproducers(const CrosscheckCommand& command, const Level& level, const CrosscheckReport& report) {
+  const size_t removed = removeReproducers(command.reproduce);
+  if (removed > 0) fmt::print("{}: {} of an earlier run removed\n", command.reproduce.string(), removed);
+  const Judge judge(level.scene, level.bvh);
+  ReproducerHead head;
+  head.scene_name = command.scene.filename().string();
+  for (const DeviceInfo& device : report.devices) head.devices.push_back(device.id);
+  if (command.options.rounding.steps != RoundingLimit{}.steps) {
+    head.options = fmt::format(" --rounding {}", command.options.rounding.steps);
+  }
+  const auto maker = [&](size_t d, const Scene& part, const Bvh& tree) {
+    return makeDevice(report.devices[d].id, part, tree);
+  };
   StatusLine status;
-  const Judge judge(scene, bvh);
+  size_t written = 0, not_alone = 0;
+  for (const CheckedRay& ray : report.disagreements.rays) {
+    status.show([&] { return fmt::format("writing disagreement {}", written + 1); });
+    const Reproducer its = findReproducer(level.scene, judge, ray.answers, maker, command.options.rounding);
+    head.what =
+        fmt::format("{} ray {} of cell {}", rayKindName(ray.kind), ray.number, level.cells[ray.cell].name);
+    head.file_name = reproducerName(written++);
+    saveText(reproducerText(head, its), command.reproduce / head.file_name);
+    not_alone += !its.reproduces;
+  }
+  status.end();
+  fmt::print("{}: {}, {} of them more than rounding: {} written, of which {} on the few triangles\n",
+             command.reproduce.string(), counted(report.disagreements.count, "disagreement"),
+             report.disagreements.illegal, written,
+             not_alone == 1 ? "1 does not reproduce" : fmt::format("{} do not reproduce", not_alone));
+}
+
+/// Bakes every cell on the first device and on each other one, says and returns how the sets differ, of as
+/// many cells as were done before a stop signal. Counts in the report what is wrong in the sets.
+Json comparePvsOfAll(const CrosscheckCommand& command, const Level& level, std::span<Device* const> devices,
+                     const StopSignal& stop, CrosscheckReport& report) {
+  StatusLine status;
+  const std::vector<ViewCell>& cells = level.cells;
+  const Judge judge(level.scene, level.bvh);
   BakeParams params;
   params.n_rand = command.n_rand;
   params.validation_rays = 0;
   params.seed = command.options.seed;
   Json pairs = Json::array();
+  report.wrong_in_sets.assign(devices.size(), 0);
   for (size_t d = 1; d < devices.size() && stop.exitCode() == 0; ++d) {
     const std::string first = devices[0]->info().id, other = devices[d]->info().id;
     std::vector<PvsDifference> differences;
@@ -53,13 +98,17 @@ Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const
                                shortCount(progress.rays), progress.pvs_size);
           });
         };
-        differences.push_back(comparePvs(judge, scene, cells[c], c, *devices[0], *devices[d], params,
+        differences.push_back(comparePvs(judge, level.scene, cells[c], c, *devices[0], *devices[d], params,
                                          command.options.rounding, {.progress = show, .stop = stop.flag()}));
       }
     } catch (const Interrupted&) {
       // The cells before it are shown.
     }
     status.end();
+    for (const PvsDifference& cell : differences) {
+      if (d == 1) report.wrong_in_sets[0] += cell.faults(0);  // its set is the same in each pair
+      report.wrong_in_sets[d] += cell.faults(1);
+    }
     std::fputs(pvsDifferenceTable(first, other, differences).c_str(), stdout);
     pairs.push_back(pvsDifferenceJson(first, other, differences));
   }
@@ -68,6 +117,9 @@ Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const
 
 void run(const CrosscheckCommand& command) {
   requireSeparate(std::array{command.report}, std::array{command.scene, command.cells});
+  if (!command.reproduce.empty()) {
+    prepareReproducerFolder(command.reproduce, command.overwrite, std::array{command.scene, command.cells});
+  }
   if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
   Scene scene = loadScene(command.scene, {.repair = command.repair});
   std::vector<ViewCell> cells = loadCells(command.cells);
@@ -98,7 +150,7 @@ void run(const CrosscheckCommand& command) {
 
   StopSignal stop;
   StatusLine status;
-  const CrosscheckReport report = crosscheck(
+  CrosscheckReport report = crosscheck(
       scene, bvh, cells, pointers, command.options,
       [&](RayKind kind, uint64_t done, uint64_t due) {
         status.show([&] {
@@ -112,10 +164,11 @@ void run(const CrosscheckCommand& command) {
              shortDuration(report.judge_seconds));
   Json json = crosscheckJson(head, report);
   if (command.pvs && stop.exitCode() == 0) {
-    json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers, stop);
+    json["pvs"] = comparePvsOfAll(command, {scene, bvh, cells}, pointers, stop, report);
   }
   json["complete"] = stop.exitCode() == 0;
   if (!command.report.empty()) saveText(jsonText(json), command.report);
+  if (!command.reproduce.empty()) writeReproducers(command, {scene, bvh, cells}, report);
   if (stop.exitCode() != 0) {
     fmt::print("stopped: the table holds what was judged by then\n");
     throw ExitCode{stop.exitCode()};
@@ -132,7 +185,8 @@ void declareLimits(CLI::App& command, CrosscheckLimits& limits) {
         ->type_name("N")
         ->group("Limits of any one device (else exit code 3)");
   };
-  count("--max-wrong", limits.wrong, "answers that the judge finds wrong");
+  count("--max-wrong", limits.wrong,
+        "answers that the judge finds wrong, and with --pvs triangles not of their cell");
   count("--max-missed", limits.missed, "hits that the judge finds lost");
   count("--max-rounded", limits.rounded, "answers that are right up to rounding only");
   count("--max-differences", limits.differences, "other triangles than the first device's");
@@ -187,6 +241,11 @@ void addCrosscheckCommand(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--report", options->report, "write everything as JSON (docs/report.md)")
       ->type_name("R.json");
+  command
+      ->add_option("--reproduce", options->reproduce,
+                   "write for each of the first 100 disagreements the triangles around the ray, as OBJ")
+      ->type_name("DIR");
+  command->add_flag("--overwrite", options->overwrite, "replace reproducers of an earlier run");
   command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
   command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");
   command->add_flag("--pvs", options->pvs,
@@ -202,6 +261,12 @@ void addCrosscheckCommand(CLI::App& app) {
     if (options->pvs && options->devices.size() < 2) {
       throw CLI::ValidationError("--pvs", "compares the sets of two devices; name another in --devices");
     }
+    const auto& devices = options->devices;
+    if (options->pvs && std::find(devices.begin(), devices.end(), "embree") != devices.end()) {
+      throw CLI::ValidationError("--pvs",
+                                 "embree traces rays only and has no sets; leave it out of --devices");
+    }
+    if (!options->reproduce.empty()) options->options.keep_disagreements = kReproducers;
     for (const std::string& name : options->kinds) {
       const auto kind = rayKindOf(name);
       if (!kind) throw CLI::ValidationError("--kinds", "no kind of ray \"" + name + "\"; see --help");

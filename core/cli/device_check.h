@@ -6,10 +6,13 @@
 
 namespace sightline {
 
-/// Whether makeDevice may know the name: said before the scene is loaded.
+/// Whether makeDevice may know the name, of a device that can bake: said before the scene is loaded.
 inline CLI::Validator deviceName() {
   return CLI::Validator(
       [](std::string& name) {
+        if (name == "embree") {
+          return std::string("embree traces rays for crosscheck and trace only; take cpu, opencl or vulkan");
+        }
         if (isDeviceName(name)) return std::string();
         return "no device \"" + name + "\"; sightline devices lists what can run here";
       },

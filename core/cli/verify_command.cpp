@@ -34,6 +34,19 @@ void writeReport(const VerifyCommand& command, const PvsFile& pvs, const std::ve
   saveText(jsonText(json), command.report);
 }
 
+/// Writes the sets with better witnesses and without what is disproved.
+void writeBetter(const VerifyCommand& command, PvsFile& pvs, const std::vector<CellProofs>& cells) {
+  uint64_t removed = 0;
+  for (size_t i = 0; i < cells.size(); ++i) {
+    removed += cells[i].counts[size_t(Proof::kDisproved)];
+    removeDisproved(cells[i], pvs.cells[i]);
+  }
+  savePvs(pvs, command.output);
+  if (removed == 0) return;
+  fmt::print("{}: {} {} left out\n", command.output.string(), counted(removed, "disproved triangle"),
+             removed == 1 ? "is" : "are");
+}
+
 /// Says whether the result is past the limits.
 bool pastLimits(const VerifyCommand& command, const std::vector<CellProofs>& cells) {
   CellProofs all;
@@ -69,7 +82,7 @@ void run(const VerifyCommand& command) {
   for (CellPvs& cell : pvs.cells) cells.push_back(verifyCell(judge, scene, cell, command.options));
   std::fputs(verifyTable(cells).c_str(), stdout);
   if (!command.report.empty()) writeReport(command, pvs, cells);
-  if (!command.output.empty()) savePvs(pvs, command.output);
+  if (!command.output.empty()) writeBetter(command, pvs, cells);
   if (pastLimits(command, cells)) throw ExitCode{kExitPastLimit};
 }
 
@@ -81,7 +94,9 @@ void addVerifyCommand(CLI::App& app) {
   const auto options = std::make_shared<VerifyCommand>();
   command->add_option("scene", options->scene, "the scene that was baked")->required()->type_name("SCENE");
   command->add_option("pvs", options->pvs, "made by bake --witnesses")->required()->type_name("OUT.pvs");
-  command->add_option("-o,--output", options->output, "write the sets with better witnesses")
+  command
+      ->add_option("-o,--output", options->output,
+                   "write the sets with better witnesses, without what is disproved")
       ->type_name("NEW.pvs");
   command->add_option("--report", options->report, "write all that is not proven as JSON (docs/report.md)")
       ->type_name("R.json");

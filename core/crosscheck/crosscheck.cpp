@@ -9,6 +9,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/device/cpu_device.h"
+#include "core/device/trace_only_device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/shared/ray.h"
 
@@ -67,16 +69,45 @@ class WorstRays {
 
  private:
   static std::tuple<Verdict, double> rank(const WorstRay& ray) {
-    return {ray.rulings[ray.device].verdict, ray.measure};
+    return {ray.checked.answers.rulings[ray.device].verdict, ray.measure};
   }
   std::vector<WorstRay> rays_;  ///< worst first; the earlier of equals
+};
+
+/// Keeps the first disagreements, of those that are legal and of those that are not.
+class DisagreementList {
+ public:
+  explicit DisagreementList(size_t most) : most_(most) {}
+
+  /// makeRay(): the ray in full, if it is to be kept.
+  template <typename MakeRay>
+  void add(bool legal, MakeRay&& makeRay) {
+    ++(legal ? legal_count_ : illegal_count_);
+    std::vector<CheckedRay>& rays = legal ? legal_ : illegal_;
+    if (rays.size() < most_) rays.push_back(makeRay());
+  }
+  Disagreements finish() {
+    Disagreements all{legal_count_ + illegal_count_, illegal_count_, std::move(illegal_)};
+    const size_t room = std::min(most_ - all.rays.size(), legal_.size());
+    all.rays.insert(all.rays.end(), legal_.begin(), legal_.begin() + ptrdiff_t(room));
+    return all;
+  }
+
+ private:
+  size_t most_;
+  uint64_t legal_count_ = 0, illegal_count_ = 0;
+  std::vector<CheckedRay> legal_, illegal_;
 };
 
 class Crosscheck {
  public:
   Crosscheck(const Scene& scene, const Bvh& bvh, std::span<Device* const> devices,
              const CrosscheckOptions& options)
-      : judge_(scene, bvh), devices_(devices), options_(options), worst_(devices.size()) {
+      : judge_(scene, bvh),
+        devices_(devices),
+        options_(options),
+        worst_(devices.size()),
+        disagreements_(options.keep_disagreements) {
     for (Device* device : devices) report_.devices.push_back(device->info());
     std::vector<RayKind> kinds = options.kinds;
     for (uint32_t k = 0; options.kinds.empty() && k < kRayKinds; ++k) kinds.push_back(RayKind(k));
@@ -115,6 +146,7 @@ class Crosscheck {
     for (const WorstRays& rays : worst_) {
       report_.worst.insert(report_.worst.end(), rays.rays().begin(), rays.rays().end());
     }
+    report_.disagreements = disagreements_.finish();
     return std::move(report_);
   }
 
@@ -166,6 +198,24 @@ class Crosscheck {
       }
       considerWorst(i, d, cell, kind(kind_index), first);
     }
+    if (!judged.judged) return;
+    const auto full = [&] { return inFull(i, cell, kind(kind_index), first); };
+    bool legal = true;
+    for (size_t d = 0; d < devices_.size(); ++d) {
+      const Verdict verdict = opinion(i, d).ruling.verdict;
+      legal = legal && verdict != Verdict::kMissed && verdict != Verdict::kWrong;
+    }
+    if (judged.disputed || !legal) disagreements_.add(legal, full);
+  }
+
+  CheckedRay inFull(size_t i, uint32_t cell, RayKind kind, uint64_t first) {
+    CheckedRay ray{cell, kind, first + i, {rays_[i], {}, {}, judged_[i].exact}};
+    if (!judged_[i].judged) ray.answers.exact = judge_.nearest(judgeRay(rays_[i]));
+    for (size_t d = 0; d < devices_.size(); ++d) {
+      ray.answers.hits.push_back(hits_[d][i]);
+      ray.answers.rulings.push_back(opinion(i, d).ruling);
+    }
+    return ray;
   }
 
   void considerWorst(size_t i, size_t d, uint32_t cell, RayKind kind, uint64_t first) {
@@ -173,13 +223,7 @@ class Crosscheck {
     const bool right = its.ruling.verdict == Verdict::kRight;
     const double measure = right ? its.ulps : its.ruling.steps_beside;
     if (!worst_[d].wouldTake(its.ruling.verdict, measure)) return;
-    WorstRay ray{cell, kind, first + i, rays_[i], uint32_t(d), measure, {}, {}, judged_[i].exact};
-    if (!judged_[i].judged) ray.exact = judge_.nearest(judgeRay(rays_[i]));
-    for (size_t other = 0; other < devices_.size(); ++other) {
-      ray.hits.push_back(hits_[other][i]);
-      ray.rulings.push_back(opinion(i, other).ruling);
-    }
-    worst_[d].consider(ray);
+    worst_[d].consider({inFull(i, cell, kind, first), uint32_t(d), measure});
   }
 
   Judge judge_;
@@ -187,6 +231,7 @@ class Crosscheck {
   const CrosscheckOptions& options_;
   CrosscheckReport report_;
   std::vector<WorstRays> worst_;  ///< by device
+  DisagreementList disagreements_;
   std::vector<Ray> rays_;
   std::vector<std::vector<Hit>> hits_;  ///< by device
   std::vector<JudgedRay> judged_;
@@ -199,6 +244,11 @@ CrosscheckReport crosscheck(const Scene& scene, const Bvh& bvh, std::span<const 
                             std::span<Device* const> devices, const CrosscheckOptions& options,
                             const CrosscheckProgress& progress, const std::atomic<bool>* stop) {
   Crosscheck check(scene, bvh, devices, options);
+  // A bake finds the rays' targets: on the first device that can.
+  const auto baker =
+      std::find_if(devices.begin(), devices.end(), [](const Device* device) { return canBake(*device); });
+  const auto own = baker == devices.end() ? makeCpuDevice(scene, bvh, {}) : nullptr;
+  Device& sampler = own ? *own : **baker;
   const uint64_t due = options.rays * check.kinds();
   uint64_t done = 0;
   const auto report = [&](RayKind kind) {
@@ -210,7 +260,7 @@ CrosscheckReport crosscheck(const Scene& scene, const Bvh& bvh, std::span<const 
       const uint64_t begin = options.rays * c / cells.size(), end = options.rays * (c + 1) / cells.size();
       if (begin == end) continue;
       report(check.kind(0));
-      const RayMaker maker(scene, cells[c], c, *devices[0], options.seed, end - begin, stop);
+      const RayMaker maker(scene, cells[c], c, sampler, options.seed, end - begin, stop);
       for (size_t k = 0; k < check.kinds(); ++k) {
         for (uint64_t first = 0; first < end - begin; first += options.batch_rays) {
           const auto count = size_t(std::min<uint64_t>(options.batch_rays, end - begin - first));

@@ -7,6 +7,7 @@
 
 #include "core/crosscheck/difference.h"
 #include "core/crosscheck/error_histogram.h"
+#include "core/crosscheck/ray_answers.h"
 #include "core/crosscheck/ray_kinds.h"
 
 namespace sightline {
@@ -18,7 +19,8 @@ struct CrosscheckOptions {
   uint64_t check_every =
       100;  ///< of rays on which all devices agree, the judge looks at 1 in so many; 0: none
   RoundingLimit rounding;
-  uint32_t batch_rays = 1u << 17;  ///< bounds the memory
+  uint32_t keep_disagreements = 0;  ///< in full, at most
+  uint32_t batch_rays = 1u << 17;   ///< bounds the memory
 };
 
 /// What one device answered to the rays of one kind.
@@ -42,24 +44,36 @@ struct KindReport {
   std::vector<DeviceTally> devices;
 };
 
-/// A ray in full, with what everybody says to it.
-struct WorstRay {
+/// A ray of a cross-check in full.
+struct CheckedRay {
   uint32_t cell = 0;
   RayKind kind = RayKind::kRandom;
   uint64_t number = 0;
-  Ray ray{};
-  uint32_t device = 0;          ///< whose answer it is here for
-  double measure = 0;           ///< steps beside, or error of t in ulps where the answer is right
-  std::vector<Hit> hits;        ///< by device
-  std::vector<Ruling> rulings;  ///< by device
-  ExactHit exact;
+  RayAnswers answers;
+};
+
+struct WorstRay {
+  CheckedRay checked;
+  uint32_t device = 0;  ///< whose answer it is here for
+  double measure = 0;   ///< steps beside, or error of t in ulps where the answer is right
+};
+
+/// Rays on which devices name different triangles, or on which an answer is missed or wrong.
+struct Disagreements {
+  uint64_t count = 0;
+  uint64_t illegal = 0;          ///< of them: an answer is missed or wrong
+  std::vector<CheckedRay> rays;  ///< illegal ones first, as they came; no more than were asked for
 };
 
 struct CrosscheckReport {
   std::vector<DeviceInfo> devices;
   std::vector<KindReport> kinds;
   std::vector<WorstRay> worst;  ///< ten at most a device: wrong, missed, rounded, then large errors of t
+  Disagreements disagreements;
   double trace_seconds = 0, judge_seconds = 0;
+  /// By device: triangles of its sets that the cells' definition rules out, if sets were compared
+  /// (comparePvs). Wrong as a wrong answer is.
+  std::vector<uint64_t> wrong_in_sets;
 };
 
 /// Told after every thousand rays or so: kind, rays done and due over all.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/report/text.h"
+#include "core/shared/vector.h"
 
 namespace sightline {
 namespace {
@@ -49,70 +50,37 @@ Json toJson(const KindReport& kind, const std::vector<DeviceInfo>& devices) {
   return json;
 }
 
-Json idOrNull(uint32_t triangle) {
-  return triangle == kNoTriangle ? Json(nullptr) : Json(triangle);
-}
-
-Json hexVector(const vec4& v) {
-  return {hexFloat(v.x), hexFloat(v.y), hexFloat(v.z)};
+std::vector<std::string> idsOf(const std::vector<DeviceInfo>& devices) {
+  std::vector<std::string> ids;
+  for (const DeviceInfo& device : devices) ids.push_back(device.id);
+  return ids;
 }
 
 Json toJson(const WorstRay& ray, const std::vector<DeviceInfo>& devices) {
-  Json answers = Json::array();
-  for (size_t d = 0; d < devices.size(); ++d) {
-    answers.push_back(
-        {{"device", devices[d].id},
-         {"triangle", idOrNull(ray.hits[d].triangle)},
-         {"t", ray.hits[d].triangle == kNoTriangle ? Json(nullptr) : Json(hexFloat(ray.hits[d].t))},
-         {"verdict", verdictName(ray.rulings[d].verdict)},
-         {"steps_beside", ray.rulings[d].steps_beside}});
-  }
-  return {{"device", devices[ray.device].id},
-          {"measure", ray.measure},
-          {"kind", rayKindName(ray.kind)},
-          {"cell", ray.cell},
-          {"number", ray.number},
-          {"origin", hexVector(ray.ray.origin)},
-          {"direction", hexVector(ray.ray.direction)},
-          {"exact_triangles", ray.exact.triangles},
-          {"exact_t", ray.exact.missed() ? Json(nullptr) : Json(ray.exact.t.low)},
-          {"answers", answers}};
-}
-
-std::string answerText(const Hit& hit) {
-  if (hit.triangle == kNoTriangle) return "nothing";
-  return fmt::format("triangle {} at {}", hit.triangle, hexFloat(hit.t));
-}
-
-std::string exactText(const ExactHit& exact) {
-  if (exact.missed()) return "nothing";
-  return fmt::format(
-      "triangle {}{} at {:.9g}", exact.triangles.front(),
-      exact.triangles.size() > 1 ? fmt::format(" and {} more", exact.triangles.size() - 1) : "", exact.t.low);
+  Json json = {{"device", devices[ray.device].id},
+               {"measure", ray.measure},
+               {"kind", rayKindName(ray.checked.kind)},
+               {"cell", ray.checked.cell},
+               {"number", ray.checked.number}};
+  addAnswers(json, ray.checked.answers, idsOf(devices));
+  return json;
 }
 
 std::string worstText(const WorstRay& ray, const std::vector<DeviceInfo>& devices) {
-  const vec4 o = ray.ray.origin, d = ray.ray.direction;
+  const RayAnswers& answers = ray.checked.answers;
   std::string text =
-      fmt::format("\n{}, {} ray {} of cell {}: {}\n", devices[ray.device].id, rayKindName(ray.kind),
-                  ray.number, ray.cell, verdictName(ray.rulings[ray.device].verdict));
-  text += fmt::format("  from {} {} {} along {} {} {}\n  exactly: {}\n", hexFloat(o.x), hexFloat(o.y),
-                      hexFloat(o.z), hexFloat(d.x), hexFloat(d.y), hexFloat(d.z), exactText(ray.exact));
+      fmt::format("\n{}, {} ray {} of cell {}: {}\n", devices[ray.device].id, rayKindName(ray.checked.kind),
+                  ray.checked.number, ray.checked.cell, verdictName(answers.rulings[ray.device].verdict));
+  text += fmt::format("  from {} along {}\n  exactly: {}\n", hexText(xyz3(answers.ray.origin)),
+                      hexText(xyz3(answers.ray.direction)), exactText(answers.exact));
   for (size_t i = 0; i < devices.size(); ++i) {
-    text += fmt::format("  {}: {} ({})\n", devices[i].id, answerText(ray.hits[i]),
-                        verdictName(ray.rulings[i].verdict));
+    text += fmt::format("  {}: {} ({})\n", devices[i].id, answerText(answers.hits[i]),
+                        verdictName(answers.rulings[i].verdict));
   }
   return text;
 }
 
 }  // namespace
-
-std::string hexFloat(float value) {
-  if (value == 0) return std::signbit(value) ? "-0x0p+0" : "0x0p+0";
-  std::string text = fmt::format("{:a}", value);
-  if (text.find("0x") == std::string::npos) text.insert(text[0] == '-' ? 1 : 0, "0x");
-  return text;
-}
 
 std::vector<std::string> pastLimits(const CrosscheckReport& report, const CrosscheckLimits& limits) {
   std::vector<std::string> lines;
@@ -125,6 +93,7 @@ std::vector<std::string> pastLimits(const CrosscheckReport& report, const Crossc
       for (uint32_t i = 1; i < kDifferences; ++i) differences += tally.differences[i];
       ulps = std::max(ulps, tally.ulps.max());
     }
+    if (d < report.wrong_in_sets.size()) counts[size_t(Verdict::kWrong)] += report.wrong_in_sets[d];
     const auto check = [&](const auto& limit, auto value, const char* what) {
       if (!limit || value <= *limit) return;
       lines.push_back(
@@ -161,6 +130,7 @@ Json crosscheckJson(const CrosscheckHead& head, const CrosscheckReport& report) 
       {"devices", devices},
       {"kinds", kinds},
       {"worst", worst},
+      {"disagreements", {{"count", report.disagreements.count}, {"illegal", report.disagreements.illegal}}},
       {"trace_seconds", report.trace_seconds},
       {"judge_seconds", report.judge_seconds}};
 }
@@ -186,7 +156,9 @@ std::string crosscheckTable(const CrosscheckReport& report) {
   }
   std::vector<size_t> shown(report.devices.size());
   for (const WorstRay& ray : report.worst) {
-    if (ray.rulings[ray.device].verdict == Verdict::kRight || shown[ray.device]++ >= kShownRays) continue;
+    if (ray.checked.answers.rulings[ray.device].verdict == Verdict::kRight ||
+        shown[ray.device]++ >= kShownRays)
+      continue;
     table += worstText(ray, report.devices);
   }
   return table;

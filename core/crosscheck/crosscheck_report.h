@@ -33,7 +33,4 @@ Json crosscheckJson(const CrosscheckHead& head, const CrosscheckReport& report);
 /// A line a kind and device, and the worst rays that are not right.
 std::string crosscheckTable(const CrosscheckReport& report);
 
-/// "0x1.8p+1", to be read back without loss.
-std::string hexFloat(float value);
-
 }  // namespace sightline

@@ -5,7 +5,8 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/crosscheck/crosscheck_report.h"
+#include "core/crosscheck/float_text.h"
+#include "core/crosscheck/ray_answers.h"
 #include "core/report/text.h"
 
 namespace sightline {
@@ -44,30 +45,44 @@ void explain(const Judge& judge, const CellPvs& with, const CellPvs& without,
   }
 }
 
+/// Finds the triangles that the cell's definition rules out.
+void findFaults(const Judge& judge, const CellPvs& pvs, uint32_t found_by, PvsDifference& result) {
+  const CellSight sight(pvs.cell);
+  for (size_t i = 0; i < pvs.triangles.size(); ++i) {
+    const uint32_t triangle = pvs.triangles[i];
+    const Fault fault = sight.faultOf(judge.corners(triangle), pvs.witnesses[i]);
+    if (fault != Fault::kNone) result.faulty.push_back({triangle, found_by, fault, pvs.witnesses[i]});
+  }
+}
+
 Json hexVector(const glm::vec3& v) {
   return {hexFloat(v.x), hexFloat(v.y), hexFloat(v.z)};
 }
 
 Json toJson(const DisputedTriangle& its, const std::array<std::string, 2>& names) {
-  Json answers = Json::array();
-  for (size_t d = 0; d < 2; ++d) {
-    const Hit& hit = its.hits[d];
-    const bool missed = hit.triangle == kNoTriangle;
-    answers.push_back({{"device", names[d]},
-                       {"triangle", missed ? Json(nullptr) : Json(hit.triangle)},
-                       {"t", missed ? Json(nullptr) : Json(hexFloat(hit.t))},
-                       {"verdict", verdictName(its.rulings[d].verdict)},
-                       {"steps_beside", its.rulings[d].steps_beside}});
-  }
   return {{"triangle", its.triangle},
           {"found_by", names[its.found_by]},
           {"stage", stageName(its.witness.stage)},
           {"origin", hexVector(its.witness.origin)},
           {"direction", hexVector(its.witness.direction)},
-          {"answers", answers}};
+          {"answers", answersJson(its.hits, its.rulings, names)}};
+}
+
+Json toJson(const FaultyTriangle& its, const std::array<std::string, 2>& names) {
+  return {{"triangle", its.triangle},
+          {"found_by", names[its.found_by]},
+          {"fault", faultName(its.fault)},
+          {"stage", stageName(its.witness.stage)},
+          {"origin", hexVector(its.witness.origin)},
+          {"direction", hexVector(its.witness.direction)}};
 }
 
 }  // namespace
+
+uint64_t PvsDifference::faults(size_t device) const {
+  return uint64_t(std::count_if(faulty.begin(), faulty.end(),
+                                [&](const FaultyTriangle& its) { return its.found_by == device; }));
+}
 
 uint64_t PvsDifference::count(size_t device, Verdict verdict) const {
   return uint64_t(std::count_if(disputed.begin(), disputed.end(), [&](const DisputedTriangle& its) {
@@ -85,6 +100,8 @@ PvsDifference comparePvs(const Judge& judge, const Scene& scene, const ViewCell&
   result.sizes = {a.triangles.size(), b.triangles.size()};
   explain(judge, a, b, {&first, &other}, 0, limit, result);
   explain(judge, b, a, {&first, &other}, 1, limit, result);
+  findFaults(judge, a, 0, result);
+  findFaults(judge, b, 1, result);
   return result;
 }
 
@@ -95,7 +112,7 @@ std::string pvsDifferenceTable(const std::string& first, const std::string& othe
   std::string table =
       fmt::format("sets of {} and {}\n{:<{}}  {:>9} {:>9}  {:>8} {:>8}  {:>11}  {:>8}", first, other, "cell",
                   width, "first", "other", "only 1st", "only 2nd", "other rays", "disputed");
-  table += "  right 1st / 2nd  rounded 1st / 2nd  missed 1st / 2nd  wrong 1st / 2nd\n";
+  table += "  right 1st / 2nd  rounded 1st / 2nd  missed 1st / 2nd  wrong 1st / 2nd  not of cell 1st / 2nd\n";
   for (const PvsDifference& cell : cells) {
     table += fmt::format("{:<{}}  {:>9} {:>9}  {:>8} {:>8}  {:>11}  {:>8}", cell.cell, width, cell.sizes[0],
                          cell.sizes[1], cell.only[0], cell.only[1], cell.other_rays[0] + cell.other_rays[1],
@@ -103,7 +120,7 @@ std::string pvsDifferenceTable(const std::string& first, const std::string& othe
     for (const Verdict verdict : kAllVerdicts) {
       table += fmt::format("  {:>7} / {:<6}", cell.count(0, verdict), cell.count(1, verdict));
     }
-    table += "\n";
+    table += fmt::format("  {:>9} / {}\n", cell.faults(0), cell.faults(1));
   }
   return table;
 }
@@ -117,8 +134,10 @@ Json pvsDifferenceJson(const std::string& first, const std::string& other,
                 {"sizes", {cell.sizes[0], cell.sizes[1]}},
                 {"only", {cell.only[0], cell.only[1]}},
                 {"other_rays", {cell.other_rays[0], cell.other_rays[1]}},
-                {"disputed", Json::array()}};
+                {"disputed", Json::array()},
+                {"faulty", Json::array()}};
     for (const DisputedTriangle& triangle : cell.disputed) its["disputed"].push_back(toJson(triangle, names));
+    for (const FaultyTriangle& triangle : cell.faulty) its["faulty"].push_back(toJson(triangle, names));
     json["cells"].push_back(its);
   }
   return json;

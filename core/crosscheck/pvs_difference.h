@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/crosscheck/cell_sight.h"
 #include "core/crosscheck/difference.h"
 #include "core/device/device.h"
 #include "core/gvs/bake_cell.h"
@@ -21,6 +22,14 @@ struct DisputedTriangle {
   std::array<Ruling, 2> rulings{};  ///< on these
 };
 
+/// A triangle of a device's set that the cell's definition rules out, whatever the devices answer.
+struct FaultyTriangle {
+  uint32_t triangle = 0;
+  uint32_t found_by = 0;  ///< 0: the first device, 1: the other
+  Fault fault = Fault::kNone;
+  Witness witness;
+};
+
 /// How the sets of one cell, baked on two devices, differ. Every triangle of the difference is explained: the
 /// other device answers its witness in the same way, and only happened to trace other rays; or it is
 /// disputed, and the judge decided.
@@ -30,7 +39,10 @@ struct PvsDifference {
   std::array<uint64_t, 2> only{};        ///< triangles that only this device's set has
   std::array<uint64_t, 2> other_rays{};  ///< of them: the other device's rays did not come there
   std::vector<DisputedTriangle> disputed;
+  std::vector<FaultyTriangle> faulty;  ///< of both sets, whether they differ there or not
 
+  /// Triangles of a device's set that the cell's definition rules out.
+  uint64_t faults(size_t device) const;
   /// Disputed triangles on whose witness the judge finds this of a device's answer.
   uint64_t count(size_t device, Verdict verdict) const;
 };

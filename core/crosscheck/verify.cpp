@@ -8,7 +8,6 @@
 
 #include "core/crosscheck/ray_random.h"
 #include "core/judge/seen_triangle.h"
-#include "core/scene/cell_frame.h"
 #include "core/scene/contained.h"
 
 namespace sightline {
@@ -22,20 +21,9 @@ constexpr double kEdgePlaces = 1 << 16;
 constexpr uint32_t kTriesFromSamePlace = 40;
 /// Binary digits of places below the cell's size, and how many more.
 constexpr int kFewestDigits = 3, kDigitChoices = 6;
-/// Float rounding of a ray's start on a face: three sums of numbers up to the cell's largest coordinate.
-constexpr double kStartRounding = 0x1p-21;
 
 Ray rayOf(const Witness& witness) {
   return {vec4(witness.origin, 0), vec4(witness.direction, 0)};
-}
-
-/// Whether a ray that starts here starts in the cell, as far as floats can tell.
-bool startsInCell(const ViewCell& cell, const CellFrame& frame, const glm::vec3& origin) {
-  double largest = 0;
-  for (const glm::vec3& corner : cellCorners(cell)) largest = std::max(largest, maxAbs(glm::dvec3(corner)));
-  const glm::dvec3 local = glm::abs(frame.toLocal(glm::dvec3(origin))), limit = frame.half_size;
-  const double slack = kStartRounding * largest;
-  return local.x <= limit.x + slack && local.y <= limit.y + slack && local.z <= limit.z + slack;
 }
 
 /// A ray that meets a triangle first.
@@ -53,11 +41,10 @@ struct Better {
 /// target and origin is a float, exactly.
 class BetterWitness {
  public:
-  BetterWitness(const Judge& judge, const ViewCell& cell, uint32_t triangle, const Witness& witness,
+  BetterWitness(const Judge& judge, const CellSight& sight, uint32_t triangle, const Witness& witness,
                 const VerifyOptions& options)
       : judge_(judge),
-        cell_(cell),
-        frame_(cellFrame(cell)),
+        sight_(sight),
         triangle_(triangle),
         shape_(judge.corners(triangle)),
         witness_(witness),
@@ -75,7 +62,7 @@ class BetterWitness {
     RayRandom random(0, triangle_);
     for (uint32_t i = 0; i < options_.tries; ++i) {
       const glm::vec3 origin = i < kTriesFromSamePlace ? witness_.origin : anyPlace(random, i);
-      if (!startsInCell(cell_, frame_, origin)) continue;
+      if (!sight_.beginsOnCell(glm::dvec3(origin))) continue;
       if (auto found = attempt(origin, anyTarget(random))) return found;
       if (i < kTriesFromSamePlace) continue;
       if (auto found = atBorder(origin)) return found;
@@ -128,6 +115,7 @@ class BetterWitness {
   void attemptExactly(const glm::vec3& origin, const glm::dvec3& target) {
     const glm::dvec3 from(origin), direction = target - from;
     if (from + direction != target || target - direction != from || direction == glm::dvec3(0.0)) return;
+    if (!sight_.looksAlong(direction)) return;
     if (!judge_.nearest({from, direction}).contains(triangle_)) return;
     point_ = Better{{origin, glm::vec3(direction), witness_.stage}, false, target};
   }
@@ -140,26 +128,26 @@ class BetterWitness {
 
   /// A place in the cell with few digits, the more the later.
   glm::vec3 anyPlace(RayRandom& random, uint32_t i) const {
-    const glm::dvec3 place = frame_.toWorld(frame_.half_size * glm::dvec3(random.point()));
-    const double largest = maxAbs(frame_.half_size);
+    const glm::dvec3 place = sight_.frame().toWorld(sight_.frame().half_size * glm::dvec3(random.point()));
+    const double largest = maxAbs(sight_.frame().half_size);
     const double grid = std::exp2(std::floor(std::log2(largest)) - kFewestDigits - i % kDigitChoices);
     glm::dvec3 rounded = glm::round(place / grid) * grid;
     for (int axis = 0; axis < 3; ++axis) {  // a flat cell's own plane must not be left
-      if (!startsInCell(cell_, frame_, glm::vec3(rounded))) rounded[axis] = place[axis];
+      if (!sight_.beginsOnCell(glm::dvec3(glm::vec3(rounded)))) rounded[axis] = place[axis];
     }
     return glm::vec3(rounded);
   }
 
   std::optional<Witness> attempt(const glm::vec3& origin, const glm::dvec3& target) const {
     const Witness better{origin, glm::vec3(target - glm::dvec3(origin)), witness_.stage};
-    if (better.direction == glm::vec3(0)) return std::nullopt;
+    const glm::dvec3 direction(better.direction);
+    if (direction == glm::dvec3(0.0) || !sight_.looksAlong(direction)) return std::nullopt;
     if (!judge_.nearest(judgeRay(rayOf(better))).contains(triangle_)) return std::nullopt;
     return better;
   }
 
   const Judge& judge_;
-  const ViewCell& cell_;
-  CellFrame frame_;
+  const CellSight& sight_;
   uint32_t triangle_;
   JudgeTriangle shape_;
   const Witness& witness_;
@@ -168,17 +156,15 @@ class BetterWitness {
   std::optional<Better> point_;
 };
 
-/// Judges one witness, and replaces it by a better one.
-OpenProof judgeWitness(const Judge& judge, const ViewCell& cell, const CellFrame& frame, uint32_t triangle,
-                       Witness& witness, const VerifyOptions& options) {
-  OpenProof result{triangle, Proof::kDisproved, witness, 0, {}};
+/// Judges one witness that the cell's definition allows, and replaces it by a better one.
+OpenProof judgeWitness(const Judge& judge, const CellSight& sight, uint32_t triangle, Witness& witness,
+                       const VerifyOptions& options) {
+  OpenProof result{triangle, Proof::kDisproved, Fault::kNotMet, witness, 0, {}};
   const Ray ray = rayOf(witness);
-  const float sum = glm::dot(witness.origin, glm::vec3(1)) + glm::dot(witness.direction, glm::vec3(1));
-  if (witness.direction == glm::vec3(0) || !std::isfinite(sum)) return result;
-  if (!startsInCell(cell, frame, witness.origin)) return result;
   const ExactHit exact = judge.nearest(judgeRay(ray));
   if (exact.contains(triangle)) {
     result.proof = Proof::kProven;
+    result.fault = Fault::kNone;
     return result;
   }
 
@@ -186,7 +172,8 @@ OpenProof judgeWitness(const Judge& judge, const ViewCell& cell, const CellFrame
   const Ruling ruling = rule(judge, ray, {0, triangle}, exact, options.rounding, false);
   result.steps_beside = ruling.steps_beside;
   if (ruling.verdict != Verdict::kRounded) return result;
-  const auto better = BetterWitness(judge, cell, triangle, witness, options).find();
+  result.fault = Fault::kNone;
+  const auto better = BetterWitness(judge, sight, triangle, witness, options).find();
   result.proof = !better ? Proof::kRounded : (better->floats ? Proof::kImproved : Proof::kPoint);
   if (better && better->floats) {
     witness = better->witness;
@@ -213,15 +200,19 @@ double CellProofs::provenShare() const {
 
 CellProofs verifyCell(const Judge& judge, const Scene& scene, CellPvs& pvs, const VerifyOptions& options) {
   const std::vector<uint32_t> contained = containedTriangles(scene, pvs.cell);
-  const CellFrame frame = cellFrame(pvs.cell);
+  const CellSight sight(pvs.cell);
   std::vector<OpenProof> findings(pvs.triangles.size());
   tbb::parallel_for(size_t(0), findings.size(), [&](size_t i) {
     const uint32_t triangle = pvs.triangles[i];
-    if (pvs.witnesses[i].stage == kStageContained) {
-      const bool meets = std::binary_search(contained.begin(), contained.end(), triangle);
-      findings[i] = {triangle, meets ? Proof::kContained : Proof::kDisproved, pvs.witnesses[i], 0, {}};
+    const bool no_ray = pvs.witnesses[i].stage == kStageContained;
+    Fault fault = sight.faultOf(judge.corners(triangle), pvs.witnesses[i]);
+    if (fault == Fault::kNone && no_ray && !std::binary_search(contained.begin(), contained.end(), triangle))
+      fault = Fault::kApart;
+    if (fault != Fault::kNone || no_ray) {
+      const Proof proof = fault == Fault::kNone ? Proof::kContained : Proof::kDisproved;
+      findings[i] = {triangle, proof, fault, pvs.witnesses[i], 0, {}};
     } else {
-      findings[i] = judgeWitness(judge, pvs.cell, frame, triangle, pvs.witnesses[i], options);
+      findings[i] = judgeWitness(judge, sight, triangle, pvs.witnesses[i], options);
     }
   });
 
@@ -231,9 +222,27 @@ CellProofs verifyCell(const Judge& judge, const Scene& scene, CellPvs& pvs, cons
     ++proofs.counts[size_t(finding.proof)];
     const bool open = finding.proof == Proof::kPoint || finding.proof == Proof::kRounded ||
                       finding.proof == Proof::kDisproved;
+    if (finding.proof == Proof::kDisproved) ++proofs.faults[size_t(finding.fault)];
     if (open) proofs.open.push_back(finding);
   }
   return proofs;
+}
+
+void removeDisproved(const CellProofs& proofs, CellPvs& pvs) {
+  size_t kept = 0;
+  auto open = proofs.open.begin();
+  for (size_t i = 0; i < pvs.triangles.size(); ++i) {
+    while (open != proofs.open.end() && open->triangle < pvs.triangles[i]) ++open;
+    const bool is_open = open != proofs.open.end() && open->triangle == pvs.triangles[i];
+    if (is_open && open->proof == Proof::kDisproved) continue;
+    pvs.triangles[kept] = pvs.triangles[i];
+    pvs.witnesses[kept++] = pvs.witnesses[i];
+  }
+  pvs.triangles.resize(kept);
+  pvs.witnesses.resize(kept);
+  pvs.stats.contained_triangles =
+      uint64_t(std::count_if(pvs.witnesses.begin(), pvs.witnesses.end(),
+                             [](const Witness& witness) { return witness.stage == kStageContained; }));
 }
 
 }  // namespace sightline

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/crosscheck/cell_sight.h"
 #include "core/judge/ruling.h"
 #include "core/pvs/pvs.h"
 #include "core/report/cell_json.h"
@@ -17,7 +18,7 @@ enum class Proof : uint8_t {
   kPoint,      ///< so does a ray to a point of its border, exactly, though no ray of floats was found
   kContained,  ///< it has no witness: it meets the cell itself
   kRounded,    ///< its witness does so up to rounding only, and no better one was found
-  kDisproved,  ///< its witness does not meet it first, or does not start in the cell, or it meets no cell
+  kDisproved,  ///< something is wrong with it: see Fault
 };
 inline constexpr uint32_t kProofs = 6;
 /// "proven", "improved", "point", "contained", "rounded", "disproved".
@@ -27,6 +28,7 @@ std::string proofName(Proof proof);
 struct OpenProof {
   uint32_t triangle = 0;
   Proof proof = Proof::kRounded;  ///< kPoint, kRounded or kDisproved
+  Fault fault = Fault::kNone;     ///< of kDisproved
   Witness witness;                ///< as it was; kPoint: from where the target is seen
   double steps_beside = 0;        ///< as of Ruling
   glm::dvec3 target{0.0};         ///< kPoint: what is seen of the triangle
@@ -35,9 +37,11 @@ struct OpenProof {
 struct CellProofs {
   std::string cell;
   std::array<uint64_t, kProofs> counts{};
-  std::vector<OpenProof> open;  ///< by triangle
+  std::array<uint64_t, kFaults> faults{};  ///< of the disproved triangles
+  std::vector<OpenProof> open;             ///< by triangle
 
-  /// Proven, improved or proven by a point, of all that have a witness; 1 where none has.
+  /// Proven, improved or proven by a point, of all that have a witness or are disproved; 1 where there are
+  /// none.
   double provenShare() const;
 };
 
@@ -47,10 +51,14 @@ struct VerifyOptions {
   uint32_t tries = 5000;
 };
 
-/// Judges every witness of a cell, and puts better ones in their place where there are (their stage stays).
-/// Deterministic. The cell must have witnesses.
+/// Judges every triangle of a cell's set, by the definition of the cell and by its witness, and puts better
+/// witnesses in the place of others where there are (their stage stays). Deterministic. The cell must have
+/// witnesses.
 CellProofs verifyCell(const Judge& judge, const Scene& scene, CellPvs& pvs,
                       const VerifyOptions& options = {});
+
+/// Takes the triangles that were disproved out of the set that verifyCell judged.
+void removeDisproved(const CellProofs& proofs, CellPvs& pvs);
 
 /// A line a cell, and the first open proofs.
 std::string verifyTable(const std::vector<CellProofs>& cells);

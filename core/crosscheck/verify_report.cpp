@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/crosscheck/crosscheck_report.h"
+#include "core/crosscheck/float_text.h"
 #include "core/crosscheck/verify.h"
 #include "core/report/text.h"
 
@@ -16,10 +16,24 @@ Json hexVector(const glm::vec3& v) {
 
 std::string openLine(const std::string& cell, const OpenProof& open) {
   const glm::vec3 o = open.witness.origin, d = open.witness.direction;
-  return fmt::format("{}: triangle {} is {}, {:.2g} steps beside: {} ray from {} {} {} along {} {} {}\n",
-                     cell, open.triangle, proofName(open.proof), open.steps_beside,
-                     stageName(open.witness.stage), hexFloat(o.x), hexFloat(o.y), hexFloat(o.z),
-                     hexFloat(d.x), hexFloat(d.y), hexFloat(d.z));
+  const bool beside = open.fault == Fault::kNone || open.fault == Fault::kNotMet;
+  std::string text = fmt::format("{}: triangle {} is {}", cell, open.triangle, proofName(open.proof));
+  if (open.fault != Fault::kNone) text += ", " + faultText(open.fault);
+  if (beside) text += fmt::format(", {:.2g} steps beside", open.steps_beside);
+  if (open.witness.stage == kStageContained) return text + "\n";
+  return text + fmt::format(": {} ray from {} {} {} along {} {} {}\n", stageName(open.witness.stage),
+                            hexFloat(o.x), hexFloat(o.y), hexFloat(o.z), hexFloat(d.x), hexFloat(d.y),
+                            hexFloat(d.z));
+}
+
+/// "flat: of 3 disproved 2: its ray begins off the cell, ..."; nothing where none is disproved.
+std::string faultLine(const CellProofs& cell) {
+  std::string text;
+  for (uint32_t i = 0; i < kFaults; ++i) {
+    if (cell.faults[i] == 0) continue;
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", cell.faults[i], faultText(Fault(i)));
+  }
+  return text.empty() ? text : fmt::format("{}: disproved are {}\n", cell.cell, text);
 }
 
 }  // namespace
@@ -35,6 +49,7 @@ std::string verifyTable(const std::vector<CellProofs>& cells) {
     for (const uint64_t count : cell.counts) table += fmt::format("  {:>9}", count);
     table += fmt::format("  {:>12.5f} %\n", 100 * cell.provenShare());
   }
+  for (const CellProofs& cell : cells) table += faultLine(cell);
   size_t listed = 0;
   for (const CellProofs& cell : cells) {
     for (const OpenProof& open : cell.open) {
@@ -52,6 +67,8 @@ Json verifyJson(const std::vector<CellProofs>& cells) {
     Json its = {{"name", cell.cell}};
     for (uint32_t i = 0; i < kProofs; ++i) its[proofName(Proof(i))] = cell.counts[i];
     its["proven_share"] = cell.provenShare();
+    its["faults"] = Json::object();
+    for (uint32_t i = 1; i < kFaults; ++i) its["faults"][faultName(Fault(i))] = cell.faults[i];
     its["open"] = Json::array();
     for (const OpenProof& open : cell.open) {
       Json entry = {{"triangle", open.triangle},
@@ -60,6 +77,7 @@ Json verifyJson(const std::vector<CellProofs>& cells) {
                     {"stage", stageName(open.witness.stage)},
                     {"origin", hexVector(open.witness.origin)},
                     {"direction", hexVector(open.witness.direction)}};
+      if (open.proof == Proof::kDisproved) entry["fault"] = faultName(open.fault);
       if (open.proof == Proof::kPoint) entry["target"] = {open.target.x, open.target.y, open.target.z};
       its["open"].push_back(entry);
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/device/cpu_device.h"
+#include "core/device/embree_device.h"
 #include "core/device/opencl_context.h"
 #include "core/device/opencl_device.h"
 #include "core/device/vulkan_device.h"
@@ -24,7 +25,7 @@ bool isOfKind(const std::string& name, const std::string& kind) {
 
 [[noreturn]] void throwUnknown(const std::string& name) {
   throw Error(fmt::format("device '{}': expected cpu, opencl, vulkan, or the latter two with :INDEX or "
-                          ":PART-OF-NAME; 'sightline devices' lists what can run here",
+                          ":PART-OF-NAME, or embree; 'sightline devices' lists what can run here",
                           name),
               kExitUsage);
 }
@@ -35,11 +36,12 @@ std::vector<DeviceInfo> listDevices() {
   std::vector<DeviceInfo> devices{cpuDeviceInfo()};
   for (DeviceInfo& device : listOpenClDevices()) devices.push_back(std::move(device));
   for (DeviceInfo& device : listVulkanDevices()) devices.push_back(std::move(device));
+  devices.push_back(embreeDeviceInfo());
   return devices;
 }
 
 bool isDeviceName(const std::string& name) {
-  return name == "cpu" || isOfKind(name, "opencl") || isOfKind(name, "vulkan");
+  return name == "cpu" || name == "embree" || isOfKind(name, "opencl") || isOfKind(name, "vulkan");
 }
 
 void requireDevice(const std::string& name) {
@@ -47,6 +49,8 @@ void requireDevice(const std::string& name) {
     requireOpenClDevice(name);
   } else if (isOfKind(name, "vulkan")) {
     selectVulkanDevice(name);
+  } else if (name == "embree") {
+    requireEmbree();
   } else if (name != "cpu") {
     throwUnknown(name);
   }
@@ -61,6 +65,7 @@ std::string intersectorOf(const std::string& name) {
 std::unique_ptr<Device> makeDevice(const std::string& name, const Scene& scene, const Bvh& bvh,
                                    const DeviceOptions& options) {
   if (name == "cpu") return makeCpuDevice(scene, bvh, options);
+  if (name == "embree") return makeEmbreeDevice(scene);
   if (isOfKind(name, "opencl")) return makeOpenClDevice(name, scene, bvh, options);
   if (isOfKind(name, "vulkan")) return makeVulkanDevice(name, scene, bvh, options);
   throwUnknown(name);

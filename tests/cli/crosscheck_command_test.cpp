@@ -92,5 +92,41 @@ TEST(VerifyCommand, ProvesABakeAndWritesBetterWitnesses) {
   expectRun("verify " + city / "city.glb" + " " + city / "spoilt.pvs", 3, {"past the limit", "is disproved"});
 }
 
+/// A flat cell whose set, made by hand, has a triangle behind its plane and one by a ray that looks
+/// backwards.
+TEST(VerifyCommand, CountsAndTakesOutWhatAFlatCellDoesNotSee) {
+  const TemporaryFolder folder;
+  const std::string scene_file = (folder / "corridor.obj").string(), bad = (folder / "bad.pvs").string();
+  std::ofstream(scene_file) << "v -9 -9 9\nv 9 -9 9\nv 0 9 9\nv -9 -9 -9\nv 9 -9 -9\nv 0 9 -9\n"
+                               "v -9 -2 -9\nv 9 -2 -9\nv 0 -2 20\nf 1 2 3\nf 4 5 6\nf 7 8 9\n";
+  const Scene scene = loadScene(scene_file);
+  PvsFile pvs;
+  pvs.scene_hash = hashScene(scene);
+  pvs.triangle_count = 3;
+  pvs.scene_name = "corridor.obj";
+  pvs.has_witnesses = true;
+  pvs.planned = {{"flat", {0, 0, 0}, {2, 1, 0}, {0, 0, 0}}};
+  const glm::vec3 origin(0.25f, 0.125f, 0);
+  pvs.cells = {{pvs.planned[0],
+                {},
+                {0, 1, 2},
+                {{origin, glm::vec3(0, 0, 9) - origin, kStageRandom},
+                 {origin, glm::vec3(0, 0, -9) - origin, kStageBorder},
+                 {origin, glm::vec3(0, -2, -1) - origin, kStageReverse}}}};
+  savePvs(pvs, bad);
+  const std::string verify = "verify " + scene_file + " ", better = (folder / "better.pvs").string();
+  expectRun(verify + bad + " -o " + better + " --report " + (folder / "v.json").string(), 3,
+            {"flat: disproved are 1: it lies behind the flat cell's plane; 1: its ray leaves the flat cell "
+             "backwards",
+             "2 disproved triangles are left out", "past the limit: 0.3333333 proven"});
+  expectRun(verify + bad + " --max-disproved 2 --min-proven 0.3", 0, {"2 are disproved"});
+  expectRun(verify + bad + " --max-disproved 2 --min-proven 0.4", 3, {"past the limit"});
+  expectRun(verify + better + " --min-proven 1", 0, {"0 are disproved"});
+  EXPECT_EQ(loadPvs(better).cells[0].triangles, std::vector<uint32_t>{0});
+  const auto report = nlohmann::json::parse(std::ifstream(folder / "v.json"));
+  EXPECT_EQ(report["cells"][0]["faults"]["behind"], 1);
+  EXPECT_EQ(report["cells"][0]["faults"]["backwards"], 1);
+}
+
 }  // namespace
 }  // namespace sightline

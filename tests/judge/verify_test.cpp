@@ -53,25 +53,126 @@ TEST(Verify, DisprovesWhatIsNotSo) {
   size_t place = 0;
   while (place < first && baked.pvs.witnesses[place].stage == kStageContained) ++place;
   ASSERT_LT(place + 1, first);
-  const auto expectDisproved = [&](const char* what, auto&& spoil) {
+  const auto expectDisproved = [&](Fault fault, const char* what, auto&& spoil) {
     Case room = bakedRoom();
     spoil(room);
     const CellProofs proofs = room.verify();
     EXPECT_EQ(count(proofs, Proof::kDisproved), 1u) << what;
+    EXPECT_EQ(proofs.faults[size_t(fault)], 1u) << what;
     ASSERT_EQ(proofs.open.size(), 1u) << what;
     EXPECT_EQ(proofs.open[0].triangle, baked.pvs.triangles[place]) << what;
+    EXPECT_EQ(proofs.open[0].fault, fault) << what;
     EXPECT_LT(proofs.provenShare(), 1) << what;
   };
-  expectDisproved("the ray is another triangle's",
+  expectDisproved(Fault::kNotMet, "the ray is another triangle's",
                   [&](Case& room) { room.pvs.witnesses[place] = room.pvs.witnesses[place + 1]; });
-  expectDisproved("the ray does not leave the cell", [&](Case& room) {
+  expectDisproved(Fault::kOffCell, "the ray begins off the cell", [&](Case& room) {
     Witness& witness = room.pvs.witnesses[place];
     witness.origin -= glm::normalize(witness.direction) * 1.5f;  // out of the cell on its other side
   });
-  expectDisproved("there is no ray", [&](Case& room) { room.pvs.witnesses[place].direction = vec3(0); });
-  expectDisproved("not a number", [&](Case& room) { room.pvs.witnesses[place].origin.y = NAN; });
-  expectDisproved("it does not meet the cell",
+  expectDisproved(Fault::kNoRay, "there is no ray",
+                  [&](Case& room) { room.pvs.witnesses[place].direction = vec3(0); });
+  expectDisproved(Fault::kNoRay, "not a number",
+                  [&](Case& room) { room.pvs.witnesses[place].origin.y = NAN; });
+  expectDisproved(Fault::kApart, "it does not meet the cell",
                   [&](Case& room) { room.pvs.witnesses[place].stage = kStageContained; });
+}
+
+/// A flat cell that looks along +z; a wall before it (0), one behind it (1), a floor that crosses its plane
+/// (2) and a step in the plane (3).
+Case corridor() {
+  Scene scene;
+  judge_test::addTriangle(scene, {-9, -9, 9}, {9, -9, 9}, {0, 9, 9});
+  judge_test::addTriangle(scene, {-9, -9, -9}, {9, -9, -9}, {0, 9, -9});
+  judge_test::addTriangle(scene, {-9, -2, -9}, {9, -2, -9}, {0, -2, 20});
+  judge_test::addTriangle(scene, {3, -1, 0}, {4, -1, 0}, {4, 1, 0});
+  Case result(std::move(scene));
+  result.pvs.cell = {"flat", {0, 0, 0}, {2, 1, 0}, {0, 0, 0}};
+  return result;
+}
+
+TEST(Verify, AFlatCellHasNothingBehindIt) {
+  Case scene = corridor();
+  const vec3 origin(0.25f, 0.125f, 0);
+  const auto to = [&](vec3 target) { return Witness{origin, target - origin, kStageBorder}; };
+  scene.pvs.triangles = {0, 1, 2};
+  scene.pvs.witnesses = {to({0, 0, 9}), to({0, 0, -9}), to({0, -2, 1})};
+  CellProofs proofs = scene.verify();
+  EXPECT_EQ(count(proofs, Proof::kProven), 2u) << "the floor counts by its front part";
+  ASSERT_EQ(proofs.open.size(), 1u);
+  EXPECT_EQ(proofs.open[0].triangle, 1u) << "its ray meets it first, but looks backwards";
+  EXPECT_EQ(proofs.open[0].fault, Fault::kBehind);
+  EXPECT_DOUBLE_EQ(proofs.provenShare(), 2.0 / 3);
+  EXPECT_NE(verifyTable({proofs}).find("flat: disproved are 1: it lies behind the flat cell's plane"),
+            std::string::npos)
+      << verifyTable({proofs});
+
+  scene.pvs.witnesses[2] = to({0, -2, -1});
+  proofs = scene.verify();
+  EXPECT_EQ(proofs.faults[size_t(Fault::kBackwards)], 1u) << "the floor's part behind the plane is not seen";
+  EXPECT_EQ(proofs.faults[size_t(Fault::kBehind)], 1u);
+  EXPECT_EQ(verifyJson({proofs})[0]["faults"]["backwards"], 1);
+  EXPECT_EQ(verifyJson({proofs})[0]["open"][1]["fault"], "backwards");
+
+  scene.pvs.witnesses[2] = to({0, -2, 1});
+  scene.pvs.witnesses[2].origin.z = scene.pvs.witnesses[0].origin.z = -1e-6f;
+  EXPECT_EQ(scene.verify().faults[size_t(Fault::kOffCell)], 2u) << "the rays begin behind the cell";
+
+  // Turned about x: what was behind is seen. The step in the plane is seen from neither side.
+  scene.pvs.cell.rotation = {180, 0, 0};
+  scene.pvs.triangles = {0, 1, 3};
+  scene.pvs.witnesses = {to({0, 0, 9}), to({0, 0, -9}), to({3.5f, 0, 0})};
+  proofs = scene.verify();
+  EXPECT_EQ(proofs.faults[size_t(Fault::kBehind)], 1u) << verifyTable({proofs});
+  EXPECT_EQ(proofs.faults[size_t(Fault::kBackwards)], 1u) << "along the plane";
+  EXPECT_EQ(count(proofs, Proof::kProven), 1u);
+}
+
+TEST(Verify, TakesOutWhatIsDisproved) {
+  Case scene = corridor();
+  const vec3 origin(0.25f, 0.125f, 0);
+  scene.pvs.triangles = {0, 1, 2, 3};
+  scene.pvs.witnesses = {{origin, vec3(0, 0, 9) - origin, kStageRandom},
+                         {origin, vec3(0, 0, -9) - origin, kStageBorder},
+                         {vec3(0), vec3(0), kStageContained},
+                         {vec3(0), vec3(0), kStageContained}};
+  scene.pvs.stats.contained_triangles = 2;
+  removeDisproved(scene.verify(), scene.pvs);  // 2 and 3 do not meet the cell
+  EXPECT_EQ(scene.pvs.triangles, std::vector<uint32_t>{0});
+  ASSERT_EQ(scene.pvs.witnesses.size(), 1u);
+  EXPECT_EQ(scene.pvs.witnesses[0].direction, vec3(0, 0, 9) - origin);
+  EXPECT_EQ(scene.pvs.stats.contained_triangles, 0u);
+  EXPECT_EQ(scene.verify().provenShare(), 1);
+}
+
+/// Bakes of all kinds of cells: nothing in them is against the cell's definition. The flat cells have nothing
+/// behind them.
+TEST(Verify, AnHonestBakeHasNoFaults) {
+  testing_support::SceneOfBoxes boxes;
+  boxes.addBox({-4, -3, -5}, {4, 3, 5});
+  boxes.addBox({0, -1, -1}, {1, 1, 1});
+  boxes.addBox({-1, -2, 2}, {1.3f, -1, 3});
+  const Scene room = boxes.finish();
+  boxes.addBox({-0.5f, -0.5f, 3}, {0.5f, 0.5f, 4});
+  boxes.addRectangle({-9, -9, 9}, {20, 0, 0.5f}, {0, 20, 1});
+  const Scene ahead = boxes.finish();
+  const struct {
+    const Scene& scene;
+    ViewCell cell;
+  } cases[] = {{room, {"box", {-2, 0.1, 0.2}, {0.5, 0.6, 0.7}, {0, 0, 0}}},
+               {room, {"touching", {-0.3, 0.1, 0.2}, {0.6, 0.6, 0.7}, {0, 0, 0}}},
+               {room, {"turned", {-2, 0.1, 0.2}, {0.5, 0.6, 0.7}, {10, 20, 30}}},
+               {room, {"sheet", {-2, 0.1, 0.2}, {0, 0.6, 0.7}, {0, 0, 0}}},
+               {room, {"turned sheet", {-2, 0.1, 0.2}, {0.4, 0, 0.7}, {15, 40, 80}}},
+               {ahead, {"flat", {0.1, 0.2, 0.3}, {0.7, 0.9, 0}, {0, 0, 0}}},
+               {ahead, {"turned flat", {0.1, 0.2, -0.3}, {0.7, 0.9, 0}, {7, -9, 33}}}};
+  for (const auto& its : cases) {
+    Case baked(its.scene);
+    baked.pvs = testing_support::bakeOn("cpu", baked.scene, its.cell);
+    const CellProofs proofs = baked.verify();
+    EXPECT_GE(baked.pvs.triangles.size(), 4u) << its.cell.name;
+    EXPECT_EQ(count(proofs, Proof::kDisproved), 0u) << verifyTable({proofs});
+  }
 }
 
 /// A flat cell that looks up at a small triangle, id 0, and a wall behind it, id 1.

@@ -10,7 +10,7 @@
 namespace sightline::judge_test {
 
 /// The cpu device, but for the answers of traceRays that `change` changes, and its sets, which lack the
-/// triangles that loseFromSet names.
+/// triangles that loseFromSet names, or are otherwise what spoilSet makes of them.
 class WrongDevice final : public Device {
  public:
   /// Changes the answer to a ray; returns whether it did. Called by one thread.
@@ -42,6 +42,7 @@ class WrongDevice final : public Device {
   std::vector<PvsEntry> readPvs() override {
     std::vector<PvsEntry> entries = device_->readPvs();
     std::erase_if(entries, [&](const PvsEntry& entry) { return lost_ && lost_(entry.origin_triangle.w); });
+    if (spoil_) spoil_(entries);
     return entries;
   }
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override {
@@ -55,6 +56,8 @@ class WrongDevice final : public Device {
 
   void loseFromSet(std::function<bool(uint32_t)> lost) { lost_ = std::move(lost); }
 
+  void spoilSet(std::function<void(std::vector<PvsEntry>&)> spoil) { spoil_ = std::move(spoil); }
+
   /// Answers changed so far.
   uint64_t changed() const { return changed_; }
 
@@ -62,6 +65,7 @@ class WrongDevice final : public Device {
   std::unique_ptr<Device> device_;
   Change change_;
   std::function<bool(uint32_t)> lost_;
+  std::function<void(std::vector<PvsEntry>&)> spoil_;
   uint64_t changed_ = 0;
 };
 

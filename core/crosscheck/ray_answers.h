@@ -1,0 +1,41 @@
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/device/device.h"
+#include "core/judge/ruling.h"
+#include "core/report/cell_json.h"
+
+namespace sightline {
+
+/// A ray with what several devices and the judge say to it.
+struct RayAnswers {
+  Ray ray{};
+  std::vector<Hit> hits;        ///< by device
+  std::vector<Ruling> rulings;  ///< by device
+  ExactHit exact;
+
+  /// Whether two devices name different triangles.
+  bool differ() const;
+  /// Whether each answer is right, if only up to rounding: none missed, none wrong.
+  bool legal() const;
+};
+
+/// Traces the ray on all devices, which hold the judge's scene. Its direction is not zero, all is finite.
+RayAnswers askAll(const Judge& judge, const Ray& ray, std::span<Device* const> devices,
+                  const RoundingLimit& limit = {});
+
+/// Adds "origin", "direction", "exact_triangles", "exact_t" and "answers". devices: their ids.
+void addAnswers(Json& json, const RayAnswers& answers, std::span<const std::string> devices);
+/// "answers" alone: device, triangle, t, verdict, steps_beside.
+Json answersJson(std::span<const Hit> hits, std::span<const Ruling> rulings,
+                 std::span<const std::string> devices);
+
+/// "triangle 4 at 0x1p+0", "nothing".
+std::string answerText(const Hit& hit);
+std::string exactText(const ExactHit& exact);
+/// "0x1p+0 0x0p+0 -0x1.8p+1"
+std::string hexText(const vec3& v);
+
+}  // namespace sightline
