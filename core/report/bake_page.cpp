@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/report/csv.h"
 #include "core/report/curve_range.h"
@@ -44,6 +45,11 @@ std::vector<ChartPoint> exampleStop(const Curve& curve, X&& x) {
   return {};
 }
 
+std::string exampleStopText() {
+  return fmt::format("the first iteration with fewer than {0} new triangles, where T = {0} stops.",
+                     kExampleThreshold);
+}
+
 size_t recorded(const std::vector<Curve>& curves) {
   return size_t(std::ranges::count_if(curves, [](const Curve& curve) { return !curve.empty(); }));
 }
@@ -77,7 +83,10 @@ void addRange(ReportChart& chart, const std::vector<Curve>& curves, X&& x) {
     lines.emplace_back();
     for (const CurvePoint& point : curve) lines.back().push_back({x(point), double(point.size)});
   }
-  CurveRange range = rangeOf(lines, chart.log_x);
+  CurveRange range = rangeOf(lines, {chart.log_x, chart.log_y});
+  for (auto* line : {&range.median, &range.lowest, &range.highest}) {
+    for (ChartPoint& point : *line) point.y = std::round(point.y);  // whole triangles
+  }
   chart.series.push_back({.name = "median", .points = std::move(range.median), .color = kMedianColor});
   chart.series.push_back(
       {.name = "lowest", .points = std::move(range.lowest), .in_legend = false, .color = kRangeColor});
@@ -92,19 +101,12 @@ ReportChart sizeChart(const BakeReport& report, const std::vector<Curve>& curves
                       X&& x) {
   ReportChart chart{
       .title = "Set size over " + x_name, .x = x_name, .y = "triangles", .log_x = true, .log_y = true};
-  const std::string dot = fmt::format(
-      "the first iteration with fewer than {0} new triangles, where T = {0} stops.", kExampleThreshold);
-  const size_t cells = recorded(curves);
-  if (cells <= kLineEach) {
-    chart.note = "Large dot: " + dot;
+  if (recorded(curves) <= kLineEach) {
+    chart.note = "Large dot: " + exampleStopText();
     addCells(chart, report, curves, 0, x);
     return chart;
   }
   chart.pick = "single cells";
-  chart.note = fmt::format(
-      "Line: median. Band: from the smallest to the largest of the {} cells, none left out; a cell that has "
-      "ended counts with its last size. Large dot of a single cell: {}",
-      cells, dot);
   addRange(chart, curves, x);
   addCells(chart, report, curves, kFirstCellColor, x);
   return chart;
@@ -175,6 +177,13 @@ void addGrowth(HtmlReport& html, const BakeReport& report, const std::vector<Cur
                           counted(report.cells.size(), "cell"), report.cells.size() == 1 ? "was" : "were"));
   }
   if (recorded(curves) == 0) return;
+  if (recorded(curves) > kLineEach) {
+    html.text(
+        fmt::format("Line: median. Band: from the smallest to the largest of the {} cells, none left out, "
+                    "from where all have "
+                    "begun; a cell that has ended counts with its last size. Large dot of a single cell: {}",
+                    recorded(curves), exampleStopText()));
+  }
   html.charts({sizeChart(report, curves, "rays", [](const CurvePoint& p) { return double(p.allRays()); }),
                sizeChart(report, curves, "seconds", [](const CurvePoint& p) { return p.seconds; })});
 }

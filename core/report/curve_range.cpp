@@ -16,10 +16,15 @@ Points countable(const Points& curve, bool log_x) {
 }
 
 /// x must not be before the curve.
-double valueAt(const Points& curve, double x) {
+double valueAt(const Points& curve, double x, ChartAxes axes) {
   const auto after =
       std::upper_bound(curve.begin(), curve.end(), x, [](double at, ChartPoint p) { return at < p.x; });
-  return std::prev(after)->y;
+  const ChartPoint a = *std::prev(after);
+  if (after == curve.end() || a.x == x) return a.y;
+  const ChartPoint b = *after;
+  const double share = axes.log_x ? std::log(x / a.x) / std::log(b.x / a.x) : (x - a.x) / (b.x - a.x);
+  if (axes.log_y && a.y > 0 && b.y > 0) return a.y * std::pow(b.y / a.y, share);
+  return std::lerp(a.y, b.y, share);
 }
 
 /// All x of the curves from `begin` on, ascending, as points without a value.
@@ -39,10 +44,10 @@ Points placesFrom(double begin, const std::vector<Points>& curves) {
 
 }  // namespace
 
-CurveRange rangeOf(std::span<const std::vector<ChartPoint>> curves, bool log_x, size_t most) {
+CurveRange rangeOf(std::span<const std::vector<ChartPoint>> curves, ChartAxes axes, size_t most) {
   std::vector<Points> counted;
   for (const Points& curve : curves) {
-    Points points = countable(curve, log_x);
+    Points points = countable(curve, axes.log_x);
     if (!points.empty()) counted.push_back(std::move(points));
   }
   CurveRange range;
@@ -50,8 +55,9 @@ CurveRange rangeOf(std::span<const std::vector<ChartPoint>> curves, bool log_x, 
   double begin = counted.front().front().x;
   for (const Points& curve : counted) begin = std::max(begin, curve.front().x);
   std::vector<double> values(counted.size());
-  for (const ChartPoint& place : thinned(placesFrom(begin, counted), log_x, most)) {
-    std::ranges::transform(counted, values.begin(), [&](const Points& c) { return valueAt(c, place.x); });
+  for (const ChartPoint& place : thinned(placesFrom(begin, counted), axes.log_x, most)) {
+    std::ranges::transform(counted, values.begin(),
+                           [&](const Points& c) { return valueAt(c, place.x, axes); });
     std::ranges::sort(values);
     const size_t middle = values.size() / 2;
     const double median = values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;

@@ -62,12 +62,13 @@ std::string place(const std::string& name, uint32_t index, size_t cells) {
   return fmt::format("{} {}/{}", name, index + 1, cells);
 }
 
-/// 0:10, 3:05, 2:07:00.
-std::string clock(double seconds) {
+/// 0:10, 3:05, 2:07:00; >0:10 for at least so much.
+std::string clock(double seconds, bool at_least) {
   if (!(seconds >= 0) || seconds > 1e9) return "?";
   const auto whole = uint64_t(std::llround(seconds));
-  if (whole < 3600) return fmt::format("{}:{:02}", whole / 60, whole % 60);
-  return fmt::format("{}:{:02}:{:02}", whole / 3600, whole % 3600 / 60, whole % 60);
+  const char* more = at_least ? ">" : "";
+  if (whole < 3600) return fmt::format("{}{}:{:02}", more, whole / 60, whole % 60);
+  return fmt::format("{}{}:{:02}:{:02}", more, whole / 3600, whole % 3600 / 60, whole % 60);
 }
 
 }  // namespace
@@ -85,10 +86,10 @@ std::string progressLine(const std::string& name, uint32_t index, size_t cells, 
   const std::string stage = progress.testing      ? "error test"
                             : progress.validating ? "validation"
                                                   : stageName(progress.stage);
-  return fmt::format("{}  it {} {}  {} rays  PVS {} +{}  left {}, all {}  {:.2f} Mrays/s",
-                     place(name, index, cells), progress.iteration, stage, shortCount(progress.rays),
-                     progress.pvs_size, progress.new_triangles, clock(progress.seconds_left),
-                     clock(all_seconds_left), rate);
+  return fmt::format(
+      "{}  it {} {}  {} rays  PVS {} +{}  left {}, all {}  {:.2f} Mrays/s", place(name, index, cells),
+      progress.iteration, stage, shortCount(progress.rays), progress.pvs_size, progress.new_triangles,
+      clock(progress.seconds_left, progress.at_least), clock(all_seconds_left, progress.at_least), rate);
 }
 
 std::string doneLine(uint32_t index, size_t cells, const CellSummary& cell) {
