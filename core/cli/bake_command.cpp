@@ -91,8 +91,8 @@ void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, 
 /// Bakes what is missing, with progress, and keeps how the sets grew for the page. Returns the exit code.
 int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Bake& bake, BakePage& page) {
   if (!bake.partProblem().empty()) {
-    say(fmt::format("{}: cut off or damaged after {} whole cells ({}); the rest is baked again",
-                    bake.partFile().string(), bake.resumed(), bake.partProblem()));
+    say(fmt::format("{}: cut off or damaged after {} ({}); the rest is baked again", bake.partFile().string(),
+                    counted(bake.resumed(), "whole cell"), bake.partProblem()));
   }
   if (bake.resumed() != 0) {
     say(fmt::format("{}: goes on after {} of {} cells, begun on {}", bake.partFile().string(), bake.resumed(),

@@ -30,6 +30,9 @@ constexpr uint32_t kRandomLaunchRays = 1u << 22, kRandomLaunchRaysGpu = 1u << 24
 /// all rays at most. Those that fail soon, while the error is large, hold up nothing.
 constexpr uint64_t kRaysBetweenTests = 4;
 
+/// Where the time left is given as a range: the probability that the bake ends before it, and after it.
+constexpr double kEarlyChance = 0.1;
+
 /// One cell's bake in progress.
 class CellBake {
  public:
@@ -365,36 +368,37 @@ class CellBake {
     hooks_.progress(p);
   }
 
-  /// Estimate of the seconds until the cell is done: to its limits, or less where T may end it. Negative:
+  /// Estimates the seconds until the cell is done: to its limits, or less where T may end it. Negative:
   /// nobody knows.
   void setTimeLeft(BakeProgress& p) const {
     const double rays_a_second = double(p.rays) / p.seconds;
-    const double estimate = testing_ ? testRaysDue() / rays_a_second : convergence(rays_a_second);
     const bool limited = params_.max_seconds > 0 || params_.max_rays > 0;
     const bool endless = params_.threshold == 0 || params_.target_error > 0;
-    const bool low =
-        !validating_ && !testing_ && (!forecast_.foretells(params_.threshold) || finish_.standsStill());
-    p.seconds_left = estimate;
-    p.at_least = low;
-    if (validating_ || (!limited && (testing_ || !endless))) return;
-    p.at_least = false;
-    p.seconds_left = -1;
-    if (!limited) return;
-    double left = 1e18;
+    double left = limited ? 1e18 : -1;
     if (params_.max_seconds > 0) left = params_.max_seconds - p.seconds;
     if (params_.max_rays > 0) {
       left = std::min(left, (double(params_.max_rays) - double(rays_)) / rays_a_second);
     }
-    left = std::max(left, 0.0) + double(params_.validation_rays) / rays_a_second;
-    p.seconds_left = endless && !testing_ ? left : std::min(left, estimate);
-    p.at_least = low && !endless && estimate < left;
+    if (limited) left = std::max(left, 0.0) + double(params_.validation_rays) / rays_a_second;
+    p.seconds_left = left;
+    if (endless && !testing_ && !validating_) return;
+    const double estimate = testing_ ? testRaysDue() / rays_a_second : convergence(rays_a_second);
+    if (limited && !validating_ && left <= estimate) return;
+    p.seconds_left = estimate;
+    if (testing_ || validating_) return;
+    p.at_least = !forecast_.foretells(params_.threshold);
+    if (p.at_least || !finish_.standsStill()) return;
+    p.seconds_left_from = convergence(rays_a_second, kEarlyChance);
+    p.seconds_left_to = convergence(rays_a_second, 1 - kEarlyChance);
+    if (limited) p.seconds_left_to = std::min(p.seconds_left_to, left);
   }
 
   /// Rays until the cell is done, if it passes the test of the error that it is in.
   double testRaysDue() const { return double(test_left_ + params_.validation_rays); }
 
-  /// Estimate of the seconds until T ends the cell, if the queue grows no further.
-  double convergence(double rays_a_second) const {
+  /// Estimate of the seconds until T ends the cell, if the queue grows no further: in so many that it has
+  /// with probability `chance`.
+  double convergence(double rays_a_second, double chance = 0.5) const {
     const double reverse_each = double(reverseRayCount(stage_params_));
     const double explored = std::max(1.0, double(bordered_));
     const double border_each = double(stats_.border.rays) / explored;
@@ -403,16 +407,16 @@ class CellBake {
     const double rays = double(waiting()) * reverse_each +
                         entries * (border_each + waiting_each * reverse_each) +
                         double(params_.validation_rays - stats_.validation_rays);
-    const double iterations = iterationsDue() + double(random_left_) / params_.n_rand;
+    const double iterations = iterationsDue(chance) + double(random_left_) / params_.n_rand;
     const double before = double(params_.n_rand) / rays_a_second;
-    return iterations * (stats_.iterations > 1 ? forecast_.secondsEach() : before) + rays / rays_a_second;
+    return iterations * (stats_.iterations > 1 ? forecast_.secondsEach(params_.threshold) : before) + rays / rays_a_second;
   }
 
   /// Estimate of the iterations after this one.
-  double iterationsDue() const {
+  double iterationsDue(double chance) const {
     if (validating_) return 0;
     const double next = iteration_new_ >= params_.threshold ? 1 : 0;
-    return std::max(next, forecast_.due(params_.threshold) - 1) + params_.quiet_iterations - 1;
+    return std::max(next, forecast_.due(params_.threshold, chance) - 1) + params_.quiet_iterations - 1;
   }
 
   Device& device_;

@@ -3,8 +3,8 @@
 
 namespace sightline {
 
-/// Watches whether forecasts of the time left come true: those that are put off again and again say only what
-/// is left at least.
+/// Watches whether forecasts of the time left come true: one that is put off again and again is better given
+/// as a range.
 class FinishWatch {
  public:
   /// A forecast: after `seconds` of work, ascending, so many are left.

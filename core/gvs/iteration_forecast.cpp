@@ -10,10 +10,10 @@ namespace {
 
 /// The first iterations find most of all, and are no part of the fall.
 constexpr size_t kFirst = 3;
-/// An iteration of the first eight that finds a hundred times the threshold is none yet either: exploration
-/// is still at work on what came in sight.
+/// An iteration of the first eight that finds thirty times the threshold is none yet either: exploration is
+/// still at work on what came in sight.
 constexpr size_t kEarly = 8;
-constexpr double kMuch = 100;
+constexpr double kMuch = 30;
 /// Variance of the logarithm of what an iteration finds, beyond that of a Poisson distribution: triangles
 /// come into sight together with their neighbours.
 constexpr double kClusters = 0.04;
@@ -76,13 +76,13 @@ bool IterationForecast::foretells(uint32_t threshold) const {
   return found_.size() > kFirst && (found_.size() >= kEarly || found_.back() < kMuch * threshold);
 }
 
-double IterationForecast::due(uint32_t threshold) const {
+double IterationForecast::due(uint32_t threshold, double chance) const {
   if (!foretells(threshold)) return 1;
   if (found_.back() < threshold) return 0;
   const Fall fall = fitFall(found_);
-  // Until as likely as not one of them has ended the bake; in strides, for there may be very many.
+  // In strides, for there may be very many.
   double iterations = 0, goes_on = 1;
-  while (goes_on > 0.5 && iterations < kLongest) {
+  while (goes_on > 1 - chance && iterations < kLongest) {
     const double stride = std::max(1.0, std::floor(iterations / 32));
     iterations += stride;
     const double mean = fall.found_now * std::pow(1 + iterations / fall.now, fall.power);
@@ -91,8 +91,9 @@ double IterationForecast::due(uint32_t threshold) const {
   return iterations;
 }
 
-double IterationForecast::secondsEach() const {
+double IterationForecast::secondsEach(uint32_t threshold) const {
   if (seconds_.empty()) return 0;
+  if (!foretells(threshold)) return std::ranges::min(seconds_);
   const size_t later = std::max<size_t>(1, seconds_.size() - 1);
   const size_t last = std::min(later, std::max<size_t>(2, seconds_.size() / 4));
   return std::accumulate(seconds_.end() - std::ptrdiff_t(last), seconds_.end(), 0.0) / double(last);

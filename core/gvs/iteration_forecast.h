@@ -13,16 +13,17 @@ class IterationForecast {
   void add(uint32_t found, double seconds);
 
   /// Iterations after the last one added until one finds fewer than threshold (at least 1), that one
-  /// included; 0 if the last did. 1 as long as they foretell nothing.
-  double due(uint32_t threshold) const;
+  /// included: so many that it has come with probability `chance` (below 1). 0 if the last one added did; 1
+  /// as long as they foretell nothing.
+  double due(uint32_t threshold, double chance = 0.5) const;
 
   /// What has been added so far says only that another iteration is due: the first three are too few, and an
   /// early one that found very much is no part of the fall yet.
   bool foretells(uint32_t threshold) const;
 
-  /// Of an iteration, by the last quarter of them, two at least, and not by the first where there is another;
-  /// 0 before it.
-  double secondsEach() const;
+  /// Of an iteration to come, by the last quarter of them, two at least, and not by the first where there is
+  /// another; as long as they foretell nothing, of the shortest. 0 before the first.
+  double secondsEach(uint32_t threshold) const;
 
  private:
   std::vector<uint32_t> found_;

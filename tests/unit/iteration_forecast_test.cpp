@@ -27,7 +27,7 @@ IterationForecast after(uint32_t iterations, uint32_t scale) {
 
 /// A forecast of the seconds left, next to the truth.
 struct Moment {
-  double passed, left, forecast;
+  double passed, left, forecast, from, to;
   bool foretells, stands_still;
 };
 
@@ -40,23 +40,27 @@ std::vector<Moment> replay(const RecordedBake& bake) {
   for (const RecordedIteration& iteration : bake.iterations) {
     passed += iteration.seconds;
     forecast.add(iteration.found, iteration.seconds);
-    const double left = forecast.due(kThreshold) * forecast.secondsEach();
-    watch.add(passed, left);
-    moments.push_back(
-        {passed, bake.seconds() - passed, left, forecast.foretells(kThreshold), watch.standsStill()});
+    const auto due = [&](double chance) {
+      return forecast.due(kThreshold, chance) * forecast.secondsEach(kThreshold);
+    };
+    watch.add(passed, due(0.5));
+    moments.push_back({passed, bake.seconds() - passed, due(0.5), due(0.1), due(0.9),
+                       forecast.foretells(kThreshold), watch.standsStill()});
   }
   moments.pop_back();
   return moments;
 }
 
-/// Median of forecast / truth over the second half of the bake's time.
-double medianRatio(const RecordedBake& bake) {
-  std::vector<double> ratios;
+/// Median factor between forecast and truth over the second half of the bake's time; 2 for both half and
+/// double. Where nothing is foretold, there is none.
+double medianFactor(const RecordedBake& bake) {
+  std::vector<double> factors;
   for (const Moment& m : replay(bake)) {
-    if (m.passed >= bake.seconds() / 2) ratios.push_back(m.forecast / m.left);
+    if (m.passed < bake.seconds() / 2 || !m.foretells) continue;
+    factors.push_back(std::max(m.forecast / m.left, m.left / m.forecast));
   }
-  std::sort(ratios.begin(), ratios.end());
-  return ratios.at(ratios.size() / 2);
+  std::sort(factors.begin(), factors.end());
+  return (factors.at((factors.size() - 1) / 2) + factors.at(factors.size() / 2)) / 2;
 }
 
 const RecordedBake& recorded(const std::string& name) {
@@ -77,8 +81,8 @@ TEST(IterationForecast, FollowsTheFall) {
       ratios.push_back(forecast.due(kThreshold) / double(found.size() - found.size() / 2));
     }
     std::sort(ratios.begin(), ratios.end());
-    EXPECT_GT(ratios[30], 0.6) << scale;
-    EXPECT_LT(ratios[30], 1.7) << scale;
+    EXPECT_GT(ratios[30], 0.5) << scale;
+    EXPECT_LT(ratios[30], 2) << scale;
   }
 }
 
@@ -118,25 +122,76 @@ TEST(IterationForecast, StaysFinite) {
 
 TEST(IterationForecast, TakesTheSecondsOfTheLastQuarter) {
   IterationForecast forecast;
-  EXPECT_EQ(forecast.secondsEach(), 0);
+  EXPECT_EQ(forecast.secondsEach(kThreshold), 0);
   forecast.add(1000, 30);
-  EXPECT_EQ(forecast.secondsEach(), 30);
-  forecast.add(100, 2);
-  EXPECT_EQ(forecast.secondsEach(), 2) << "the first finds most, and takes longest";
+  EXPECT_EQ(forecast.secondsEach(kThreshold), 30);
+  forecast.add(9, 2);
+  EXPECT_EQ(forecast.secondsEach(kThreshold), 2) << "the first finds most, and takes longest";
   for (int i = 0; i < 5; ++i) forecast.add(100, 3);
   forecast.add(100, 5);
-  EXPECT_EQ(forecast.secondsEach(), 4);
+  EXPECT_EQ(forecast.secondsEach(kThreshold), 4);
+  forecast.add(100'000, 9);
+  EXPECT_EQ(forecast.secondsEach(kThreshold), 7);
 }
 
-// MEASURED
+TEST(IterationForecast, TakesTheShortestWhereTheyForetellNothing) {
+  IterationForecast forecast;
+  for (const double seconds : {5.0, 22.0, 14.0}) forecast.add(50'000, seconds);
+  EXPECT_EQ(forecast.secondsEach(kThreshold), 5);
+}
+
+// Before (a fall with 1 / iteration of the mean of the last quarter, at the mean rate of rays) and now:
+//   hairline room 5.2, 1.3; smaller hairline room 4.2, 1.7; wide gaps 2.1, 2.0; city street 2.1, 2.1; the
+//   geometric mean of the four 3.1, 1.7. Of the canyon, 15 hours were foretold to a bake of 19 s: now only
+//   what is left at least, until the last but one iteration.
 TEST(IterationForecast, ForetellsRecordedBakes) {
+  double product = 1;
   for (const char* name : {"hairline room", "smaller hairline room", "wide gaps", "city street"}) {
-    std::string line;
-    for (const Moment& m : replay(recorded(name)))
-      line += std::to_string(int(m.left)) + ":" + std::to_string(int(m.forecast)) + (m.foretells ? "" : "?") +
-              (m.stands_still ? "> " : " ");
-    std::printf("%s %f %s\n", name, medianRatio(recorded(name)), line.c_str());
+    const double factor = medianFactor(recorded(name));
+    EXPECT_LT(factor, 2.3) << name;
+    product *= factor;
   }
+  EXPECT_LT(medianFactor(recorded("hairline room")), 1.5);
+  EXPECT_LT(std::pow(product, 0.25), 1.8);
+}
+
+/// What stands there as the least is less, what stands there as a range is right most times, and what stands
+/// there alone is not off by more than the bake is long.
+TEST(IterationForecast, SaysHowSureItIs) {
+  double ranges = 0, right = 0;
+  for (const RecordedBake& bake : kRecordedBakes) {
+    SCOPED_TRACE(bake.name);
+    for (const Moment& m : replay(bake)) {
+      SCOPED_TRACE(m.passed);
+      if (!m.foretells) {
+        EXPECT_LE(m.forecast, m.left);
+      } else if (m.stands_still) {
+        ++ranges;
+        EXPECT_LE(m.from, m.forecast);
+        EXPECT_LE(m.forecast, m.to);
+        right += m.from <= m.left && m.left <= m.to ? 1 : 0;
+      } else {
+        EXPECT_LT(std::abs(m.forecast - m.left), 0.4 * bake.seconds());
+      }
+    }
+  }
+  ASSERT_GT(ranges, 20);
+  EXPECT_GT(right / ranges, 0.6) << ranges;
+}
+
+TEST(FinishWatch, TellsAForecastThatStandsStill) {
+  FinishWatch comes_true, stands_still, grows, fell;
+  for (double now = 1; now < 100; ++now) {
+    comes_true.add(now, 100 - now);
+    stands_still.add(now, 20);
+    grows.add(now, now);
+    fell.add(now, now < 50 ? 100 : 100 - now);
+    EXPECT_FALSE(comes_true.standsStill()) << now;
+    EXPECT_EQ(stands_still.standsStill(), now > 1) << now;
+    EXPECT_EQ(grows.standsStill(), now > 1) << now;
+  }
+  EXPECT_FALSE(fell.standsStill()) << "what was long ago is forgotten";
+  EXPECT_FALSE(FinishWatch().standsStill());
 }
 
 }  // namespace
