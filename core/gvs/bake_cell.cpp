@@ -372,6 +372,10 @@ class CellBake {
   /// nobody knows.
   void setTimeLeft(BakeProgress& p) const {
     const double rays_a_second = double(p.rays) / p.seconds;
+    if (validating_) {
+      p.seconds_left = double(params_.validation_rays - stats_.validation_rays) / rays_a_second;
+      return;
+    }
     const bool limited = params_.max_seconds > 0 || params_.max_rays > 0;
     const bool endless = params_.threshold == 0 || params_.target_error > 0;
     double left = limited ? 1e18 : -1;
@@ -381,11 +385,11 @@ class CellBake {
     }
     if (limited) left = std::max(left, 0.0) + double(params_.validation_rays) / rays_a_second;
     p.seconds_left = left;
-    if (endless && !testing_ && !validating_) return;
+    if (endless && !testing_) return;
     const double estimate = testing_ ? testRaysDue() / rays_a_second : convergence(rays_a_second);
-    if (limited && !validating_ && left <= estimate) return;
+    if (limited && left <= estimate) return;
     p.seconds_left = estimate;
-    if (testing_ || validating_) return;
+    if (testing_) return;
     p.at_least = !forecast_.foretells(params_.threshold);
     if (p.at_least || !finish_.standsStill()) return;
     p.seconds_left_from = convergence(rays_a_second, kEarlyChance);
@@ -406,15 +410,15 @@ class CellBake {
     const double entries = double(pvs_size_ - listed_);
     const double rays = double(waiting()) * reverse_each +
                         entries * (border_each + waiting_each * reverse_each) +
-                        double(params_.validation_rays - stats_.validation_rays);
+                        double(params_.validation_rays);
     const double iterations = iterationsDue(chance) + double(random_left_) / params_.n_rand;
-    const double before = double(params_.n_rand) / rays_a_second;
-    return iterations * (stats_.iterations > 1 ? forecast_.secondsEach(params_.threshold) : before) + rays / rays_a_second;
+    const double each = stats_.iterations > 1 ? forecast_.secondsEach(params_.threshold)
+                                              : double(params_.n_rand) / rays_a_second;
+    return iterations * each + rays / rays_a_second;
   }
 
   /// Estimate of the iterations after this one.
   double iterationsDue(double chance) const {
-    if (validating_) return 0;
     const double next = iteration_new_ >= params_.threshold ? 1 : 0;
     return std::max(next, forecast_.due(params_.threshold, chance) - 1) + params_.quiet_iterations - 1;
   }
