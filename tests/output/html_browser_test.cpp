@@ -241,6 +241,35 @@ TEST_F(HtmlInBrowser, ShowsSingleCellsOnDemand) {
   }
 }
 
+/// Of many cells the pictures are small, and each can be enlarged.
+TEST_F(HtmlInBrowser, EnlargesSmallPictures) {
+  HtmlReport report("many pictures");
+  report.table({.columns = {"a"}, .rows = {{"b"}}});
+  const std::vector<uint8_t> png = encodePng(Image(320, 240, {40, 160, 60}));
+  report.pictures(std::vector<ReportPicture>(kLargePictures + 1, {.png = png, .caption = "a cell"}));
+  std::string html = report.html();
+  html.insert(html.rfind("</body>"), R"(<script>
+    const image = document.querySelectorAll('.pictures img')[2], button = image.closest('button');
+    const width = () => Math.round(image.getBoundingClientRect().width);
+    window.said = {widths: [width()], expanded: [button.getAttribute('aria-expanded')]};
+    for (let i = 0; i < 2; ++i) {
+      button.click();
+      said.widths.push(width());
+      said.expanded.push(button.getAttribute('aria-expanded'));
+    }
+  </script>)");
+  for (const int width : {400, 1280}) {
+    const json page = measure(html, width);
+    EXPECT_EQ(page["wrong"], json::array());
+    EXPECT_EQ(page["scroll_width"], width);
+    const json& widths = page["said"]["widths"];
+    EXPECT_LT(widths[0], width / 2);
+    EXPECT_GT(widths[1], 0.85 * width);
+    EXPECT_EQ(widths[2], widths[0]);
+    EXPECT_EQ(page["said"]["expanded"], (json{"false", "true", "false"}));
+  }
+}
+
 /// Where a table is wider than the page, its edge fades and a line says so.
 TEST_F(HtmlInBrowser, SaysThatATableScrolls) {
   const json phone = measure(pageOfCells(2), 400);
