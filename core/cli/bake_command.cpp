@@ -128,8 +128,8 @@ void warnOfCells(const BakeOptions& options, const Scene& scene, const Bake& bak
 int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Bake& bake, BakePage& page,
               CellWarningPrinter& warnings) {
   if (!bake.partProblem().empty()) {
-    say(fmt::format("{}: cut off or damaged after {} whole cells ({}); the rest is baked again",
-                    bake.partFile().string(), bake.resumed(), bake.partProblem()));
+    say(fmt::format("{}: cut off or damaged after {} ({}); the rest is baked again", bake.partFile().string(),
+                    counted(bake.resumed(), "whole cell"), bake.partProblem()));
   }
   if (bake.resumed() != 0) {
     say(fmt::format("{}: goes on after {} of {} cells, begun on {}", bake.partFile().string(), bake.resumed(),

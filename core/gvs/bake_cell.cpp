@@ -12,6 +12,7 @@
 #include "core/gvs/exploration_yield.h"
 #include "core/gvs/face_rays.h"
 #include "core/gvs/fill_set.h"
+#include "core/gvs/finish_watch.h"
 #include "core/gvs/hemicube.h"
 #include "core/gvs/iteration_forecast.h"
 #include "core/gvs/make_stage_params.h"
@@ -32,6 +33,9 @@ constexpr uint32_t kRandomLaunchRays = 1u << 22, kRandomLaunchRaysGpu = 1u << 24
 /// After a test of the error, so many times its rays are traced before the next one: tests take a fifth of
 /// all rays at most. Those that fail soon, while the error is large, hold up nothing.
 constexpr uint64_t kRaysBetweenTests = 4;
+
+/// Where the time left is given as a range: the probability that the bake ends before it, and after it.
+constexpr double kEarlyChance = 0.1;
 
 /// One cell's bake in progress.
 class CellBake {
@@ -60,9 +64,11 @@ class CellBake {
     for (bool more = true; more;) {
       ++stats_.iterations;
       iteration_new_ = 0;
+      const double begun = seconds();
       more = sample() && (!explores() || explore());
       quiet = iteration_new_ < params_.threshold ? quiet + 1 : 0;
-      forecast_.add(iteration_new_);
+      forecast_.add(iteration_new_, seconds() - begun);
+      finish_.add(seconds(), convergence(double(rays_) / seconds()));
       if (bound != nullptr) {
         const bool reached = (rays_ >= next_test_ || !more) && testError(*bound, member);
         if (reached) stats_.stop = StopReason::kTargetError;
@@ -347,47 +353,67 @@ class CellBake {
     // Before the first border rays nobody knows how much there is to explore.
     const bool known =
         !explores() || stats_.border.rays > 0 || stats_.iterations > 1 || validating_ || testing_;
-    p.seconds_left = known ? secondsDue(double(p.rays) / p.seconds, p.seconds) : -1;
+    if (known) {
+      setTimeLeft(p);
+    } else {
+      p.seconds_left = -1;
+    }
     hooks_.progress(p);
   }
 
-  /// Estimate of the seconds until the cell is done: to its limits, or less where T may end it. Negative:
+  /// Estimates the seconds until the cell is done: to its limits, or less where T may end it. Negative:
   /// nobody knows.
-  double secondsDue(double rays_a_second, double now) const {
-    const double estimate = (testing_ ? testRaysDue() : raysDue()) / rays_a_second;
+  void setTimeLeft(BakeProgress& p) const {
+    const double rays_a_second = double(p.rays) / p.seconds;
+    if (validating_) {
+      p.seconds_left = double(params_.validation_rays - stats_.validation_rays) / rays_a_second;
+      return;
+    }
     const bool limited = params_.max_seconds > 0 || params_.max_rays > 0;
     const bool endless = params_.threshold == 0 || params_.target_error > 0;
-    if (validating_ || (!limited && (testing_ || !endless))) return estimate;
-    if (!limited) return -1;
-    double left = 1e18;
-    if (params_.max_seconds > 0) left = params_.max_seconds - now;
+    double left = limited ? 1e18 : -1;
+    if (params_.max_seconds > 0) left = params_.max_seconds - p.seconds;
     if (params_.max_rays > 0) {
       left = std::min(left, (double(params_.max_rays) - double(rays_)) / rays_a_second);
     }
-    left = std::max(left, 0.0) + double(params_.validation_rays) / rays_a_second;
-    return endless && !testing_ ? left : std::min(left, estimate);
+    if (limited) left = std::max(left, 0.0) + double(params_.validation_rays) / rays_a_second;
+    p.seconds_left = left;
+    if (endless && !testing_) return;
+    const double estimate = testing_ ? testRaysDue() / rays_a_second : convergence(rays_a_second);
+    if (limited && left <= estimate) return;
+    p.seconds_left = estimate;
+    if (testing_) return;
+    p.at_least = !forecast_.foretells(params_.threshold);
+    if (p.at_least || !finish_.standsStill()) return;
+    p.seconds_left_from = convergence(rays_a_second, kEarlyChance);
+    p.seconds_left_to = convergence(rays_a_second, 1 - kEarlyChance);
+    if (limited) p.seconds_left_to = std::min(p.seconds_left_to, left);
   }
 
   /// Rays until the cell is done, if it passes the test of the error that it is in.
   double testRaysDue() const { return double(test_left_ + params_.validation_rays); }
 
-  /// Estimate of the rays until T ends the cell, if the queue grows no further.
-  double raysDue() const {
+  /// Estimate of the seconds until T ends the cell, if the queue grows no further: in so many that it has
+  /// with probability `chance`.
+  double convergence(double rays_a_second, double chance = 0.5) const {
     const double reverse_each = double(reverseRayCount(stage_params_));
     const double explored = std::max(1.0, double(bordered_));
     const double border_each = double(stats_.border.rays) / explored;
     const double waiting_each = double(discontinuities_total_) / explored;
     const double entries = double(pvs_size_ - listed_);
-    return double(random_left_) + iterationsDue() * params_.n_rand + double(waiting()) * reverse_each +
-           entries * (border_each + waiting_each * reverse_each) +
-           double(params_.validation_rays - stats_.validation_rays);
+    const double rays = double(waiting()) * reverse_each +
+                        entries * (border_each + waiting_each * reverse_each) +
+                        double(params_.validation_rays);
+    const double iterations = iterationsDue(chance) + double(random_left_) / params_.n_rand;
+    const double each = stats_.iterations > 1 ? forecast_.secondsEach(params_.threshold)
+                                              : double(params_.n_rand) / rays_a_second;
+    return iterations * each + rays / rays_a_second;
   }
 
   /// Estimate of the iterations after this one.
-  double iterationsDue() const {
-    if (validating_) return 0;
+  double iterationsDue(double chance) const {
     const double next = iteration_new_ >= params_.threshold ? 1 : 0;
-    return std::max(next, forecast_.due(params_.threshold) - 1) + params_.quiet_iterations - 1;
+    return std::max(next, forecast_.due(params_.threshold, chance) - 1) + params_.quiet_iterations - 1;
   }
 
   Device& device_;
@@ -413,6 +439,7 @@ class CellBake {
   ExplorationYield yield_;
   uint32_t iteration_new_ = 0;
   IterationForecast forecast_;  ///< of the iterations before this one
+  FinishWatch finish_;          ///< of convergence() after each iteration
   uint64_t next_test_ = 0;      ///< rays traced when the error is next tested against the target
   uint64_t test_left_ = 0;      ///< rays of the test in work
   bool testing_ = false, validating_ = false;

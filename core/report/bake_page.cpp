@@ -3,13 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/report/csv.h"
+#include "core/report/curve_range.h"
 #include "core/report/text.h"
 
 namespace sightline {
 namespace {
 
+/// Cells whose growth is drawn a line each: of more, no line could be told from the others.
+constexpr size_t kLineEach = 8;
+/// Colour numbers of a chart of more: median and range of one colour, then the cells.
+constexpr uint32_t kMedianColor = 0, kRangeColor = 10, kFirstCellColor = 11;
 /// Cells whose iterations are drawn stage by stage: more would make a page that nobody scrolls through.
 constexpr size_t kStageCharts = 12;
 /// The thesis's example of a termination criterion: dots of figures 7.4 to 7.8.
@@ -28,36 +34,81 @@ Curve iterationEnds(const Curve& curve) {
   return ends;
 }
 
-/// The set's size over x(point), one line a cell, and a dot where T = 10 stops.
+/// Where T = 10 stops: the first iteration with fewer new triangles. Empty: none had fewer.
+template <typename X>
+std::vector<ChartPoint> exampleStop(const Curve& curve, X&& x) {
+  uint32_t before = 0;
+  for (const CurvePoint& end : iterationEnds(curve)) {
+    if (end.size - before < kExampleThreshold) return {{x(end), double(end.size)}};
+    before = end.size;
+  }
+  return {};
+}
+
+std::string exampleStopText() {
+  return fmt::format("the first iteration with fewer than {0} new triangles, where T = {0} stops.",
+                     kExampleThreshold);
+}
+
+size_t recorded(const std::vector<Curve>& curves) {
+  return size_t(std::ranges::count_if(curves, [](const Curve& curve) { return !curve.empty(); }));
+}
+
+/// Adds a line a cell, and a dot where T = 10 stops.
+template <typename X>
+void addCells(ReportChart& chart, const BakeReport& report, const std::vector<Curve>& curves,
+              uint32_t first_color, X&& x) {
+  const bool on_demand = !chart.pick.empty();
+  for (size_t i = 0; i < curves.size(); ++i) {
+    if (curves[i].empty()) continue;
+    const auto color = uint32_t(first_color + i);
+    ChartSeries line{.name = report.cells[i].cell.name, .on_demand = on_demand, .color = color};
+    ChartSeries dot{.name = fmt::format("{}, T = {}", line.name, kExampleThreshold),
+                    .points = exampleStop(curves[i], x),
+                    .dots = true,
+                    .on_demand = on_demand,
+                    .in_legend = false,
+                    .color = color};
+    for (const CurvePoint& point : curves[i]) line.points.push_back({x(point), double(point.size)});
+    chart.series.push_back(line);
+    if (!dot.points.empty()) chart.series.push_back(dot);
+  }
+}
+
+/// Adds the median of all cells and the range that they fill.
+template <typename X>
+void addRange(ReportChart& chart, const std::vector<Curve>& curves, X&& x) {
+  std::vector<std::vector<ChartPoint>> lines;
+  for (const Curve& curve : curves) {
+    lines.emplace_back();
+    for (const CurvePoint& point : curve) lines.back().push_back({x(point), double(point.size)});
+  }
+  CurveRange range = rangeOf(lines, {chart.log_x, chart.log_y});
+  for (auto* line : {&range.median, &range.lowest, &range.highest}) {
+    for (ChartPoint& point : *line) point.y = std::round(point.y);  // whole triangles
+  }
+  chart.series.push_back({.name = "median", .points = std::move(range.median), .color = kMedianColor});
+  chart.series.push_back(
+      {.name = "lowest", .points = std::move(range.lowest), .in_legend = false, .color = kRangeColor});
+  chart.series.push_back(
+      {.name = "highest", .points = std::move(range.highest), .fills = true, .color = kRangeColor});
+}
+
+/// The set's size over x(point): of few cells a line each, of many their median and range, and each on
+/// demand.
 template <typename X>
 ReportChart sizeChart(const BakeReport& report, const std::vector<Curve>& curves, const std::string& x_name,
                       X&& x) {
   ReportChart chart{
-      .title = "Set size over " + x_name,
-      .note = fmt::format(
-          "Large dot: the first iteration with fewer than {0} new triangles, where T = {0} stops.",
-          kExampleThreshold),
-      .x = x_name,
-      .y = "triangles",
-      .log_x = true,
-      .log_y = true};
-  for (size_t i = 0; i < curves.size(); ++i) {
-    if (curves[i].empty()) continue;
-    ChartSeries line{.name = report.cells[i].cell.name, .color = uint32_t(i)};
-    ChartSeries dot{.name = fmt::format("{}, T = {}", line.name, kExampleThreshold),
-                    .dots = true,
-                    .in_legend = false,
-                    .color = uint32_t(i)};
-    for (const CurvePoint& point : curves[i]) line.points.push_back({x(point), double(point.size)});
-    uint32_t before = 0;
-    for (const CurvePoint& end : iterationEnds(curves[i])) {
-      if (end.size - before < kExampleThreshold && dot.points.empty())
-        dot.points.push_back({x(end), double(end.size)});
-      before = end.size;
-    }
-    chart.series.push_back(line);
-    if (!dot.points.empty()) chart.series.push_back(dot);
+      .title = "Set size over " + x_name, .x = x_name, .y = "triangles", .log_x = true, .log_y = true};
+  if (recorded(curves) <= kLineEach) {
+    chart.note = "Large dot: " + exampleStopText();
+    addCells(chart, report, curves, 0, x);
+    return chart;
   }
+  chart.pick = "single cells";
+  addRange(chart, curves, x);
+  addCells(chart, report, curves, kFirstCellColor, x);
   return chart;
 }
 
@@ -137,16 +188,35 @@ void addWarnings(HtmlReport& html, const BakeReport& report) {
 }
 
 void addGrowth(HtmlReport& html, const BakeReport& report, const std::vector<Curve>& curves) {
-  size_t recorded = 0;
-  for (const Curve& curve : curves) recorded += curve.empty() ? 0 : 1;
   html.section("How the sets grew");
-  if (recorded < report.cells.size()) {
-    html.text(fmt::format("{} of {} cells were baked by an earlier run, which left no curve.",
-                          report.cells.size() - recorded, report.cells.size()));
+  const size_t earlier = report.cells.size() - recorded(curves);
+  if (earlier > 0) {
+    html.text(fmt::format("{} of {} {} baked by an earlier run, which left no curve.", earlier,
+                          counted(report.cells.size(), "cell"), report.cells.size() == 1 ? "was" : "were"));
   }
-  if (recorded == 0) return;
+  if (recorded(curves) == 0) return;
+  if (recorded(curves) > kLineEach) {
+    html.text(
+        fmt::format("Line: median. Band: from the smallest to the largest of the {} cells, none left out, "
+                    "from where all have "
+                    "begun; a cell that has ended counts with its last size. Large dot of a single cell: {}",
+                    recorded(curves), exampleStopText()));
+  }
   html.charts({sizeChart(report, curves, "rays", [](const CurvePoint& p) { return double(p.allRays()); }),
                sizeChart(report, curves, "seconds", [](const CurvePoint& p) { return p.seconds; })});
+}
+
+void addPictures(HtmlReport& html, const std::vector<ReportPicture>& pictures) {
+  if (pictures.empty()) return;
+  html.section("Pictures");
+  html.text(
+      "From outside: triangles in the set green, the view cell orange. From inside: red what is seen but not "
+      "in the set.");
+  html.pictures(pictures);
+}
+
+void addStages(HtmlReport& html, const BakeReport& report, const std::vector<Curve>& curves) {
+  if (recorded(curves) == 0) return;
   html.section("Stage by stage");
   html.text("Rays that each stage has traced, and triangles that it has found, over the rays of all stages.");
   std::vector<ReportChart> charts;
@@ -157,7 +227,10 @@ void addGrowth(HtmlReport& html, const BakeReport& report, const std::vector<Cur
     charts.push_back(
         stageChart(name + ": new triangles by stage", "triangles", curves[i], &CurvePoint::new_triangles));
   }
-  if (charts.size() / 2 < recorded) html.text(fmt::format("The first {} cells are drawn.", kStageCharts));
+  if (charts.size() / 2 < recorded(curves)) {
+    html.text(fmt::format("The first {} of {} cells are drawn; the table of bake --csv has all of them.",
+                          kStageCharts, recorded(curves)));
+  }
   html.charts(charts);
 }
 
@@ -198,9 +271,10 @@ std::vector<ReportFact> parameterFacts(const BakeParams& p) {
 
 HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
   HtmlReport html("Bake of " + report.scene.name);
-  html.text(fmt::format("Which of {} triangles can be seen from {} of {} view cells, by {} on {}.",
-                        report.scene.triangles, report.cells.size(), report.planned_cells,
-                        methodName(report.params.method), report.baked_on));
+  html.text(fmt::format("Which of {} triangles can be seen from {} of {}, by {} on {}.",
+                        report.scene.triangles, report.cells.size(),
+                        counted(report.planned_cells, "view cell"), methodName(report.params.method),
+                        report.baked_on));
   html.section("Cells");
   html.table(cellsTable(report));
   html.text(
@@ -210,14 +284,8 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
       (report.params.target_error > 0 ? " Error at most: the same of wrong pixels." : ""));
   addWarnings(html, report);
   addGrowth(html, report, page.curves);
-  if (!page.pictures.empty()) {
-    html.section("Pictures");
-    html.text(
-        "From outside: triangles in the set green, the view cell orange. From inside: red what is seen but "
-        "not in "
-        "the set.");
-    html.pictures(page.pictures);
-  }
+  addPictures(html, page.pictures);
+  addStages(html, report, page.curves);
   html.section("Parameters");
   html.facts(parameterFacts(report.params));
   html.section("Scene");

@@ -11,10 +11,11 @@ namespace sightline {
 namespace {
 
 std::string seriesHtml(const ChartSeries& series, const std::vector<ChartPoint>& points, uint32_t color) {
-  std::string html =
-      fmt::format("<tbody data-color=\"{}\"{}{}{}>\n<tr><th colspan=\"2\" scope=\"rowgroup\">{}</th></tr>\n",
-                  color, series.dots ? " data-dots" : "", series.dashed ? " data-dashed" : "",
-                  series.in_legend ? "" : " data-unlisted", escapeHtml(series.name));
+  std::string html = fmt::format(
+      "<tbody data-color=\"{}\"{}{}{}{}{}>\n<tr><th colspan=\"2\" scope=\"rowgroup\">{}</th></tr>\n", color,
+      series.dots ? " data-dots" : "", series.dashed ? " data-dashed" : "", series.fills ? " data-fills" : "",
+      series.in_legend ? "" : " data-unlisted", series.on_demand ? " data-on-demand" : "",
+      escapeHtml(series.name));
   for (const ChartPoint& point : points)
     html += fmt::format("<tr><td>{}</td><td>{}</td></tr>\n", point.x, point.y);
   return html + "</tbody>\n";
@@ -29,9 +30,10 @@ std::vector<ChartPoint> drawable(const std::vector<ChartPoint>& points) {
 }
 
 std::string headHtml(const ReportChart& chart, const char* kind) {
-  std::string html =
-      fmt::format("<figure class=\"{}\"{}{}>\n<figcaption><b>{}</b>", kind, chart.log_x ? " data-log-x" : "",
-                  chart.log_y ? " data-log-y" : "", escapeHtml(chart.title));
+  std::string html = fmt::format("<figure class=\"{}\"{}{}", kind, chart.log_x ? " data-log-x" : "",
+                                 chart.log_y ? " data-log-y" : "");
+  if (!chart.pick.empty()) html += fmt::format(" data-pick=\"{}\"", escapeHtml(chart.pick));
+  html += fmt::format(">\n<figcaption><b>{}</b>", escapeHtml(chart.title));
   if (!chart.note.empty()) html += fmt::format("<span class=\"note\">{}</span>", escapeHtml(chart.note));
   return html + "</figcaption>\n";
 }
@@ -70,9 +72,10 @@ std::string chartHtml(const ReportChart& chart) {
   for (size_t i = 0; i < chart.series.size(); ++i) {
     const ChartSeries& series = chart.series[i];
     const std::vector<ChartPoint> points = drawable(series.points);
-    const std::vector<ChartPoint> kept = thinned(points, chart.log_x);
+    const size_t most = series.on_demand ? kMaxOnDemandPoints : kMaxChartPoints;
+    const std::vector<ChartPoint> kept = thinned(points, chart.log_x, most);
     bodies += seriesHtml(series, kept, series.color.value_or(uint32_t(i)));
-    if (series.in_legend) names += (names.empty() ? "" : ", ") + series.name;
+    if (series.in_legend && !series.on_demand) names += (names.empty() ? "" : ", ") + series.name;
     shown += kept.size();
     all += points.size();
   }

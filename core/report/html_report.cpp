@@ -80,7 +80,7 @@ void HtmlReport::charts(std::span<const ReportChart> charts) {
 }
 
 void HtmlReport::pictures(std::span<const ReportPicture> pictures) {
-  body_ += "<div class=\"pictures\">\n";
+  body_ += fmt::format("<div class=\"pictures{}\">\n", pictures.size() > kLargePictures ? " many" : "");
   for (const ReportPicture& picture : pictures) {
     body_ += fmt::format(
         "<figure class=\"picture\"><img alt=\"{}\" "
@@ -124,6 +124,7 @@ std::string HtmlReport::html() const {
   page += kChartScript;
   page += "\n</script>\n<script>\n";
   page += kPageScript;
+  page += kReadingScript;
   page += "</script>\n</body>\n</html>\n";
   return page;
 }

@@ -48,8 +48,10 @@ struct ChartSeries {
   std::vector<ChartPoint> points = {};  ///< in the order of the line; points that are not finite are left out
   bool dots = false;                    ///< dots without a line
   bool dashed = false;
-  bool in_legend = true;               ///< a series without belongs to the one of its colour
-  std::optional<uint32_t> color = {};  ///< of ten, with its own marker; none: the series' place in its chart
+  bool fills = false;  ///< the area between this line and the series before it is tinted, markers left out
+  bool on_demand = false;  ///< not drawn until the reader picks its name, then in a colour that is free
+  bool in_legend = true;   ///< a series without belongs to the one of its colour number
+  std::optional<uint32_t> color = {};  ///< modulo ten, with its own marker; none: its place in the chart
 };
 
 /// Lines over two axes. On a logarithmic axis there is no place for x or y of 0 or below: the line has a gap,
@@ -59,6 +61,8 @@ struct ReportChart {
   std::string note = {};       ///< below the title; empty: none
   std::string x = {}, y = {};  ///< what the axes say, with the unit: "seconds"
   bool log_x = false, log_y = false;
+  std::string pick = {};  ///< what the series on demand are: "single cells". Charts beside each other share
+                          ///< one list to pick from, by the names of the series
   std::vector<ChartSeries> series = {};
 };
 
@@ -76,12 +80,17 @@ struct ReportRepeat {
 
 /// Points of a series that a page draws at most: more cannot be told apart.
 inline constexpr size_t kMaxChartPoints = 300;
+/// Of a series on demand: there may be hundreds of them.
+inline constexpr size_t kMaxOnDemandPoints = 100;
 
 /// The series with at most `most` (2 or more) of its points: the first, the last, and of those between the
 /// last one in each of equal parts of the axis (of its logarithm). A line of points in ascending x keeps its
 /// shape.
 std::vector<ChartPoint> thinned(std::span<const ChartPoint> points, bool log_x,
                                 size_t most = kMaxChartPoints);
+
+/// Pictures in a row that are drawn large.
+inline constexpr size_t kLargePictures = 16;
 
 class HtmlReport {
  public:
@@ -95,8 +104,10 @@ class HtmlReport {
   void facts(std::span<const ReportFact> facts);
   /// Throws std::invalid_argument if a row has not as many cells as there are columns.
   void table(const ReportTable& table);
-  /// Charts beside each other where there is room. Series are thinned to kMaxChartPoints.
+  /// Charts beside each other where there is room. Series are thinned to kMaxChartPoints, or
+  /// kMaxOnDemandPoints.
   void charts(std::span<const ReportChart> charts);
+  /// Beside each other where there is room; more than kLargePictures are small until the reader enlarges one.
   void pictures(std::span<const ReportPicture> pictures);
   /// A section that says how to make the page again.
   void repeat(const ReportRepeat& repeat);

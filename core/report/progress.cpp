@@ -70,6 +70,17 @@ std::string clock(double seconds) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole % 3600 / 60, whole % 60);
 }
 
+/// 0:10; >0:10 for at least so much; 0:05-0:40 for a range. after: what follows the cell, in seconds.
+std::string timeLeft(const BakeProgress& progress, double after) {
+  const std::string likely = clock(progress.seconds_left + after);
+  if (progress.seconds_left < 0 || likely == "?") return "?";
+  if (progress.at_least) return ">" + likely;
+  if (progress.seconds_left_to <= 0) return likely;
+  const std::string from = clock(progress.seconds_left_from + after);
+  const std::string to = clock(progress.seconds_left_to + after);
+  return from == to ? from : from + "-" + to;
+}
+
 }  // namespace
 
 uint32_t terminalColumns(std::FILE* out) {
@@ -87,8 +98,10 @@ std::string progressLine(const std::string& name, uint32_t index, size_t cells, 
                                                   : stageName(progress.stage);
   return fmt::format("{}  it {} {}  {} rays  PVS {} +{}  left {}, all {}  {:.2f} Mrays/s",
                      place(name, index, cells), progress.iteration, stage, shortCount(progress.rays),
-                     progress.pvs_size, progress.new_triangles, clock(progress.seconds_left),
-                     clock(all_seconds_left), rate);
+                     progress.pvs_size, progress.new_triangles, timeLeft(progress, 0),
+                     progress.seconds_left < 0 ? clock(all_seconds_left)
+                                               : timeLeft(progress, all_seconds_left - progress.seconds_left),
+                     rate);
 }
 
 std::string doneLine(uint32_t index, size_t cells, const CellSummary& cell) {

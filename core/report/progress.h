@@ -41,7 +41,8 @@ class ProgressPrinter {
 uint32_t terminalColumns(std::FILE* out);
 
 /// "street-1 2/10  it 3 border  12.3M rays  8.12 Mrays/s  PVS 12345 +17  left 0:12, all 3:10": iteration and
-/// stage in work, size of the set and what this iteration added, time left for the cell and for all.
+/// stage in work, size of the set and what this iteration added, time left for the cell and for all: ">0:12"
+/// is at least so much, "0:05-0:40" a range in which it ends four times of five.
 std::string progressLine(const std::string& name, uint32_t index, size_t cells, const BakeProgress& progress,
                          double all_seconds_left);
 /// The same place's line when the cell is done.

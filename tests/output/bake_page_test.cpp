@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <regex>
 #include <sstream>
 
 #include "tests/output/example_pvs.h"
@@ -58,6 +59,72 @@ TEST(BakePage, DrawsTheCurvesAndWhereTenWouldStop) {
   EXPECT_NE(stages.find(">border<"), std::string::npos);
   EXPECT_EQ(stages.find(">reverse<"), std::string::npos) << "it found nothing";
   EXPECT_NE(html.find("1 of 2 cells were baked by an earlier run"), std::string::npos);
+}
+
+size_t countOf(const std::string& text, const std::string& what) {
+  size_t count = 0;
+  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
+  return count;
+}
+
+/// A report of so many cells, and a page with a curve of each: cell i has i times the triangles of the first.
+std::string pageOfCells(uint32_t cells) {
+  BakeReport report = exampleReport();
+  BakePage page;
+  for (uint32_t i = 1; i <= cells; ++i) {
+    report.cells.resize(i, report.cells[0]);
+    report.cells[i - 1].cell.name = "cell-" + std::to_string(i);
+    page.curves.push_back(exampleCurve());
+    for (CurvePoint& p : page.curves.back()) p.size *= i;
+  }
+  page.pictures.push_back({.png = {1}, .caption = "cell-1 from outside"});
+  return bakePage(report, page).html();
+}
+
+TEST(BakePage, FewCellsAreALineEach) {
+  const std::string rays = between(pageOfCells(8), "<b>Set size over rays</b>", "</figure>");
+  EXPECT_EQ(countOf(rays, "<tbody"), 8u + 8u) << "lines, and dots where fewer than 10 are new";
+  EXPECT_EQ(countOf(rays, "data-on-demand"), 0u);
+  EXPECT_EQ(rays.find("median"), std::string::npos);
+}
+
+TEST(BakePage, ManyCellsAreAMedianAndARangeWithSingleCellsOnDemand) {
+  const std::string html = pageOfCells(50);
+  EXPECT_NE(html.find("from the smallest to the largest of the 50 cells"), std::string::npos);
+  for (const char* over : {"rays", "seconds"}) {
+    SCOPED_TRACE(over);
+    const std::string chart = between(html, std::string("<b>Set size over ") + over + "</b>", "</figure>");
+    EXPECT_EQ(countOf(chart, "data-fills"), 1u);
+    for (int cell = 1; cell <= 50; ++cell) {
+      const std::string body = "<tbody[^>]*data-on-demand>\n[^\n]*>cell-" + std::to_string(cell) + "<";
+      EXPECT_TRUE(std::regex_search(chart, std::regex(body))) << cell;
+    }
+    EXPECT_EQ(countOf(chart, "<tbody") - countOf(chart, "data-on-demand"), 3u) << "median, lowest, highest";
+  }
+  const std::string rays = between(html, "<b>Set size over rays</b>", "</figure>");
+  EXPECT_NE(rays.find(">median</th></tr>\n<tr><td>1000</td><td>2550</td>"), std::string::npos) << rays;
+  EXPECT_NE(rays.find(">lowest</th></tr>\n<tr><td>1000</td><td>100</td>"), std::string::npos) << rays;
+  EXPECT_NE(rays.find(">highest</th></tr>\n<tr><td>1000</td><td>5000</td>"), std::string::npos) << rays;
+}
+
+TEST(BakePage, PicturesComeBeforeTheStageCharts) {
+  const std::string html = pageOfCells(50);
+  const size_t growth = html.find(">How the sets grew</h2>"), pictures = html.find(">Pictures</h2>"),
+               stages = html.find(">Stage by stage</h2>");
+  ASSERT_NE(stages, std::string::npos);
+  EXPECT_LT(growth, pictures);
+  EXPECT_LT(pictures, stages);
+}
+
+TEST(BakePage, CountsOneCellAsOne) {
+  BakeReport report = exampleReport();
+  report.cells.resize(1);
+  report.planned_cells = 1;
+  BakePage page;
+  page.curves.resize(1);
+  const std::string html = bakePage(report, page).html();
+  EXPECT_NE(html.find("from 1 of 1 view cell,"), std::string::npos);
+  EXPECT_NE(html.find("1 of 1 cell was baked by an earlier run"), std::string::npos);
 }
 
 TEST(BakePage, WithoutCurvesItStillHasItsTable) {

@@ -46,6 +46,13 @@ addEventListener('load', () => setTimeout(() => {
     pictures: Array.from(document.querySelectorAll('.pictures img'), (i) => i.naturalWidth),
     fetched: performance.getEntriesByType('resource').map((e) => e.name).filter((n) => !n.startsWith('data:')),
     hostile: document.querySelector('tbody tr:last-child th').textContent,
+    legend_heights: Array.from(document.querySelectorAll('.legend'), (box) => box.getBoundingClientRect().height),
+    plot_heights: Array.from(document.querySelectorAll('.plot'), (box) => box.getBoundingClientRect().height),
+    hints: Array.from(document.querySelectorAll('main > .hint'), (hint) => hint.getBoundingClientRect().height > 0),
+    faded: Array.from(document.querySelectorAll('main > .scroll'), (box) => getComputedStyle(box).maskImage !== 'none' ||
+                                                                 getComputedStyle(box).webkitMaskImage !== 'none'),
+    tables: Array.from(document.querySelectorAll('main > .scroll'), (box) => box.scrollWidth > box.clientWidth),
+    said: window.said || null,
     unlabelled: Array.from(document.querySelectorAll('img:not([alt]), canvas:not([aria-label]):not([aria-hidden])'))
         .length,
   };
@@ -148,6 +155,131 @@ TEST_F(HtmlInBrowser, ShowsABake) {
     EXPECT_EQ(page["legends"], (json{2, 2, 2, 2, 2, 2})) << "random and border: reverse found nothing";
     for (const json& colors : page["colors"]) EXPECT_GE(colors, 3);
   }
+}
+
+/// The page of so many cells, with curves.
+std::string pageOfCells(size_t cells) {
+  BakeReport report;
+  report.scene.name = "city.glb";
+  report.scene.triangles = 100'000;
+  report.cells.resize(cells, summarize(examplePvs())[0]);
+  report.planned_cells = cells;
+  BakePage bake;
+  for (size_t i = 0; i < cells; ++i) {
+    report.cells[i].cell.name = "street-" + std::to_string(i + 1);
+    bake.curves.emplace_back();
+    for (uint32_t k = 1; k < 40; ++k) {
+      bake.curves.back().push_back(
+          {0.1 * k, {uint64_t(1000) * k, 0, 0}, {k, 0, 0}, uint32_t(100 * (i + 1)) + 5 * k, k});
+    }
+  }
+  return bakePage(report, bake).html();
+}
+
+/// A legend of fifty names would be larger than its chart.
+TEST_F(HtmlInBrowser, ALegendStaysSmallerThanItsChart) {
+  HtmlReport many("many");
+  many.table({.columns = {"a"}, .rows = {{"b"}}});
+  many.charts({testing_support::exampleChart("Fifty lines", true, 50, 30)});
+  for (const int width : {390, 1280}) {
+    for (const std::string& html : {pageOfCells(50), many.html()}) {
+      const json page = measure(html, width);
+      EXPECT_EQ(page["wrong"], json::array());
+      EXPECT_EQ(page["scroll_width"], width);
+      ASSERT_GT(page["legend_heights"].size(), 0u);
+      for (size_t i = 0; i < page["legend_heights"].size(); ++i) {
+        EXPECT_LT(page["legend_heights"][i].get<double>(), 0.6 * page["plot_heights"][i].get<double>());
+      }
+    }
+  }
+}
+
+/// Picks two of fifty cells, by keys and by a click, then takes one back.
+TEST_F(HtmlInBrowser, ShowsSingleCellsOnDemand) {
+  std::string html = pageOfCells(50);
+  html.insert(html.rfind("</body>"), R"(<script>
+    const shown = () => Array.from(document.querySelectorAll('.charts')[0].querySelectorAll('figure'), (figure) => {
+      const chart = Chart.getChart(figure.querySelector('canvas'));
+      return {sets: chart.data.datasets.filter((set, i) => chart.isDatasetVisible(i)).map((set) => set.label),
+              legend: Array.from(figure.querySelectorAll('.legend button'), (button) => button.textContent),
+              x: [chart.scales.x.min, chart.scales.x.max]};
+    });
+    const boxes = document.querySelectorAll('.pick input[type=checkbox]');
+    window.said = {boxes: boxes.length, before: shown(), lists: document.querySelectorAll('.pick').length};
+    document.querySelector('.pick').open = true;
+    boxes[6].focus();
+    said.focused = document.activeElement === boxes[6];
+    boxes[6].click();
+    boxes[41].click();
+    said.two = shown();
+    boxes[6].click();
+    said.one = shown();
+    const find = document.querySelector('.pick input[type=search]');
+    find.value = 'STREET-4';
+    find.dispatchEvent(new Event('input'));
+    said.found = Array.from(boxes).filter((box) => box.getBoundingClientRect().height > 0).length;
+    document.querySelector('.pick button').click();
+    said.none = shown();
+  </script>)");
+  const json page = measure(html, 1280);
+  EXPECT_EQ(page["wrong"], json::array());
+  const json& said = page["said"];
+  EXPECT_EQ(said["lists"], 1) << "one for both charts";
+  EXPECT_EQ(said["boxes"], 50);
+  EXPECT_EQ(said["focused"], true);
+  EXPECT_EQ(said["found"], 11) << "street-4 and street-40 to street-49";
+  const json all = {"median", "lowest", "highest"}, legend = {"median", "lowest to highest"};
+  for (size_t chart = 0; chart < 2; ++chart) {
+    EXPECT_EQ(said["before"][chart]["sets"], all);
+    EXPECT_EQ(said["before"][chart]["legend"], legend);
+    EXPECT_EQ(said["two"][chart]["legend"], (json{"median", "lowest to highest", "street-7", "street-42"}));
+    EXPECT_EQ(said["two"][chart]["sets"], (json{"median", "lowest", "highest", "street-7", "street-7, T = 10",
+                                                "street-42", "street-42, T = 10"}));
+    EXPECT_EQ(said["one"][chart]["legend"], (json{"median", "lowest to highest", "street-42"}));
+    EXPECT_EQ(said["none"][chart]["sets"], all);
+    EXPECT_EQ(said["two"][chart]["x"], said["before"][chart]["x"]) << "the axis stays";
+  }
+}
+
+/// Of many cells the pictures are small, and each can be enlarged.
+TEST_F(HtmlInBrowser, EnlargesSmallPictures) {
+  HtmlReport report("many pictures");
+  report.table({.columns = {"a"}, .rows = {{"b"}}});
+  const std::vector<uint8_t> png = encodePng(Image(320, 240, {40, 160, 60}));
+  report.pictures(std::vector<ReportPicture>(kLargePictures + 1, {.png = png, .caption = "a cell"}));
+  std::string html = report.html();
+  html.insert(html.rfind("</body>"), R"(<script>
+    const image = document.querySelectorAll('.pictures img')[2], button = image.closest('button');
+    const width = () => Math.round(image.getBoundingClientRect().width);
+    window.said = {widths: [width()], expanded: [button.getAttribute('aria-expanded')]};
+    for (let i = 0; i < 2; ++i) {
+      button.click();
+      said.widths.push(width());
+      said.expanded.push(button.getAttribute('aria-expanded'));
+    }
+  </script>)");
+  for (const int width : {400, 1280}) {
+    const json page = measure(html, width);
+    EXPECT_EQ(page["wrong"], json::array());
+    EXPECT_EQ(page["scroll_width"], width);
+    const json& widths = page["said"]["widths"];
+    EXPECT_LT(widths[0], width / 2);
+    EXPECT_GT(widths[1], 0.85 * width);
+    EXPECT_EQ(widths[2], widths[0]);
+    EXPECT_EQ(page["said"]["expanded"], (json{"false", "true", "false"}));
+  }
+}
+
+/// Where a table is wider than the page, its edge fades and a line says so.
+TEST_F(HtmlInBrowser, SaysThatATableScrolls) {
+  const json phone = measure(pageOfCells(2), 400);
+  EXPECT_EQ(phone["tables"], json::array({true}));
+  EXPECT_EQ(phone["hints"], json::array({true}));
+  EXPECT_EQ(phone["faded"], json::array({true}));
+  const json desktop = measure(pageOfCells(2), 1500);
+  EXPECT_EQ(desktop["tables"], json::array({false}));
+  EXPECT_EQ(desktop["hints"], json::array({false}));
+  EXPECT_EQ(desktop["faded"], json::array({false}));
 }
 
 TEST_F(HtmlInBrowser, TheWatchWorks) {

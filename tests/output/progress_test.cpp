@@ -71,6 +71,29 @@ TEST(Progress, LineSaysEverything) {
             "street-1 2/10  it 3 border  12.3M rays  PVS 12345 +17  left 0:10, all 3:10  6.15 Mrays/s");
 }
 
+TEST(Progress, LineSaysHowSureTheTimeLeftIs) {
+  const auto line = [](const BakeProgress& progress, double all) {
+    const std::string text = progressLine("a", 0, 2, progress, all);
+    const size_t begin = text.find("left");
+    return text.substr(begin, text.find("  ", begin) - begin);
+  };
+  BakeProgress progress = at(2);
+  progress.at_least = true;
+  EXPECT_EQ(line(progress, 190), "left >0:10, all >3:10");
+  progress.at_least = false;
+  progress.seconds_left_from = 4;
+  progress.seconds_left_to = 75;
+  EXPECT_EQ(line(progress, 190), "left 0:04-1:15, all 3:04-4:15");
+  progress.seconds_left_from = progress.seconds_left_to = 10.2;
+  EXPECT_EQ(line(progress, 190), "left 0:10, all 3:10");
+  progress.seconds_left = -1;
+  EXPECT_EQ(line(progress, 190), "left ?, all 3:10") << "by the cells before";
+  EXPECT_EQ(line(progress, -1), "left ?, all ?");
+  progress = at(2);
+  progress.seconds_left = 1e300;
+  EXPECT_EQ(line(progress, 1e300), "left ?, all ?");
+}
+
 TEST(Progress, PlainLinesComeAtTheStartEveryFewSecondsAndAtTheEnd) {
   Output out;
   ProgressPrinter printer(out.stream(), 0, threeCells());

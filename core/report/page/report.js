@@ -3,6 +3,7 @@
   'use strict';
   const kMarkers = ['circle', 'triangle', 'rect', 'rectRot', 'cross', 'star', 'crossRot', 'rectRounded'];
   const kColors = 10;
+  const kTint = '2e';  // opacity of a band
   const kMarkersALine = 8;  // about: more would hide the line
 
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -22,21 +23,36 @@
     return String(Number(scaled.toPrecision(3))) + unit;
   }
 
-  // On a logarithmic axis 1, 10, 100, ..., on a short one 2 and 5 between them too.
-  function logTick(value, index, ticks) {
-    const decades = Math.log10(ticks[ticks.length - 1].value / ticks[0].value);
-    const lead = Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
-    return lead === 1 || (decades < 2.5 && (lead === 2 || lead === 5)) ? short(value) : '';
+  const leadOf = (value) => Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
+
+  // Leaves 1, 10, 100, ... on a logarithmic axis, on a short one 2 and 5 between them too: of all ticks, those
+  // that there is room for need not be round.
+  function keepRoundTicks(scale) {
+    const decades = Math.log10(scale.max / scale.min);
+    const leads = decades < 2.5 ? [1, 2, 5] : [1];
+    const round = scale.ticks.filter((tick) => leads.includes(leadOf(tick.value)));
+    if (round.length > 1) scale.ticks = round;
   }
 
-  // values: along the axis. Whole numbers get no ticks between them.
-  function axis(title, logarithmic, values) {
-    const ticks = {maxRotation: 0, autoSkipPadding: 12, callback: logarithmic ? logTick : short};
+  // From a round number to a round number around all values.
+  function roundEnds(values) {
+    const positive = values.filter((value) => value > 0);
+    if (positive.length === 0) return {};
+    const unit = (value) => 10 ** Math.floor(Math.log10(value) + 1e-9);
+    const low = positive.reduce((a, b) => Math.min(a, b)), high = positive.reduce((a, b) => Math.max(a, b));
+    const min = Math.floor(low / unit(low) + 1e-9) * unit(low), max = Math.ceil(high / unit(high) - 1e-9) * unit(high);
+    return max > min ? {min, max} : {};
+  }
+
+  // values: along the axis. Whole numbers get no ticks between them. fixed: the axis stays where lines come and go.
+  function axis(title, logarithmic, values, fixed) {
+    const ticks = {maxRotation: 0, autoSkipPadding: 12, callback: short};
     if (!logarithmic && values.every((value) => !(value % 1))) ticks.precision = 0;
     return {
       type: logarithmic ? 'logarithmic' : 'linear',
       title: {display: true, text: title},
-      ticks,
+      ticks, ...(logarithmic ? {afterBuildTicks: keepRoundTicks} : {}),
+      ...(logarithmic && fixed ? roundEnds(values) : {}),
     };
   }
 
@@ -48,9 +64,9 @@
         const x = Number(row.cells[0].textContent), y = Number(row.cells[1].textContent);
         if (!logX || x > 0) points.push({x, y: !logY || y > 0 ? y : NaN});  // NaN: a gap in the line
       }
-      const has = (flag) => flag in body.dataset;
-      return {name: body.rows[0].cells[0].textContent, color: Number(body.dataset.color), points,
-              line: !has('dots'), dashed: has('dashed'), legend: !has('unlisted')};
+      const has = (flag) => flag in body.dataset, color = Number(body.dataset.color);
+      return {name: body.rows[0].cells[0].textContent, key: color, color, points, line: !has('dots'),
+              dashed: has('dashed'), fills: has('fills'), legend: !has('unlisted'), onDemand: has('onDemand')};
     });
   }
 
@@ -69,12 +85,25 @@
     return marked;
   }
 
+  // Both lines of a band. A band that goes down to 0 on a logarithmic axis goes to the axis's end.
+  function closeBands(all, logY) {
+    const values = all.flatMap((series) => series.points.map((point) => point.y)).filter((y) => y > 0);
+    const floor = values.reduce((a, b) => Math.min(a, b), Infinity);
+    all.forEach((series, i) => {
+      if (!series.fills) return;
+      for (const edge of [all[i - 1], series]) {
+        edge.edge = true;
+        if (logY) edge.points.forEach((point) => { if (!(point.y > 0)) point.y = floor; });
+      }
+    });
+  }
+
   function dataset(series, logX) {
-    const marked = markedPoints(series.points, logX);
+    const marked = series.edge ? new Set() : markedPoints(series.points, logX);
     return {
-      label: series.name, data: series.points, showLine: series.line, borderWidth: 2,
-      borderDash: series.dashed ? [6, 4] : [],
-      pointStyle: kMarkers[series.color % kMarkers.length], clip: 8,
+      label: series.name, data: series.points, showLine: series.line, borderWidth: series.edge ? 1 : 2,
+      borderDash: series.dashed ? [6, 4] : [], fill: series.fills ? '-1' : false, order: series.edge ? 1 : 0,
+      hidden: series.onDemand, clip: 8,
       pointRadius: (context) => (!series.line ? 5.5 : marked.has(context.dataIndex) ? 3.5 : 0),
       pointBorderWidth: 1.5, pointHitRadius: 8, pointHoverRadius: 6,
     };
@@ -83,8 +112,10 @@
   function paint(chart, all) {
     const ink = style('--ink'), line = style('--line');
     chart.data.datasets.forEach((set, i) => {
-      set.borderColor = set.backgroundColor = set.pointBackgroundColor = colorOf(all[i].color);
+      set.borderColor = set.pointBackgroundColor = colorOf(all[i].color);
+      set.backgroundColor = set.borderColor + kTint;
       set.pointBorderColor = all[i].line ? set.borderColor : ink;
+      set.pointStyle = kMarkers[all[i].color % kMarkers.length];
     });
     for (const scale of Object.values(chart.options.scales)) {
       scale.ticks.color = scale.title.color = ink;
@@ -101,6 +132,11 @@
     context.strokeStyle = context.fillStyle = colorOf(series.color);
     context.lineWidth = 2;
     context.setLineDash(series.dashed ? [6, 4] : []);
+    if (series.fills) {
+      context.fillStyle += kTint;
+      context.fillRect(0, 0, 28, 14);
+      return;
+    }
     if (series.line) {
       context.beginPath();
       context.moveTo(0, 7);
@@ -114,34 +150,47 @@
     Chart.helpers.drawPoint(context, options, 14, 7);
   }
 
-  // A button a series that hides and shows it. Returns the swatches' painters.
+  // A button a series that hides and shows it, with a series of its own colour that is not listed. Returns what
+  // takes a series up into the legend, out of it, and paints its swatches.
   function addLegend(box, chart, all) {
-    const painters = [];
-    all.forEach((series, i) => {
-      if (!series.legend) return;
-      const button = document.createElement('button'), swatch = document.createElement('canvas');
+    const entries = new Map();
+    const setShown = (i, show) => {
+      all.forEach((other, j) => {
+        if (j === i || (!other.legend && other.key === all[i].key)) chart.setDatasetVisibility(j, show);
+      });
+    };
+    const add = (i) => {
+      const series = all[i], button = document.createElement('button'), swatch = document.createElement('canvas');
       button.type = 'button';
       button.setAttribute('aria-pressed', 'true');
       swatch.setAttribute('aria-hidden', 'true');
-      button.append(swatch, series.name);
+      button.append(swatch, series.fills ? `${all[i - 1].name} to ${series.name}` : series.name);
       button.addEventListener('click', () => {
         const show = !chart.isDatasetVisible(i);
-        all.forEach((other, j) => {
-          if (j === i || (!other.legend && other.color === series.color)) chart.setDatasetVisibility(j, show);
-        });
+        setShown(i, show);
         button.setAttribute('aria-pressed', String(show));
         chart.update('none');
       });
       box.append(button);
-      painters.push(() => paintSwatch(swatch, series));
-    });
-    return painters;
+      entries.set(i, {button, swatch});
+      setShown(i, true);
+    };
+    const remove = (i) => {
+      entries.get(i).button.remove();
+      entries.delete(i);
+      setShown(i, false);
+    };
+    const paintSwatches = () => entries.forEach(({swatch}, i) => paintSwatch(swatch, all[i]));
+    all.forEach((series, i) => { if (series.legend && !series.onDemand) add(i); });
+    return {add, remove, paintSwatches};
   }
 
   function draw(figure) {
     const logX = 'logX' in figure.dataset, logY = 'logY' in figure.dataset;
     const table = figure.querySelector('table');
     const all = readSeries(table, logX, logY);
+    closeBands(all, logY);
+    const onDemand = 'pick' in figure.dataset;
     const [x, y] = Array.from(table.tHead.rows[0].cells, (cell) => cell.textContent);
     const along = (key) => all.flatMap((series) => series.points.map((point) => point[key]));
     const label = (item) => `${item.dataset.label}: ${short(item.parsed.y)} ${y} at ${short(item.parsed.x)} ${x}`;
@@ -153,15 +202,93 @@
         devicePixelRatio: Math.max(2, window.devicePixelRatio || 1),  // sharp on paper
         interaction: {mode: 'nearest', intersect: false},
         plugins: {legend: {display: false}, tooltip: {callbacks: {title: () => '', label}}},
-        scales: {x: axis(x, logX, along('x')), y: axis(y, logY, along('y'))},
+        scales: {x: axis(x, logX, along('x'), onDemand), y: axis(y, logY, along('y'), onDemand)},
       },
     });
-    const painters = [() => paint(chart, all), ...addLegend(figure.querySelector('.legend'), chart, all)];
-    return () => painters.forEach((one) => one());
+    const legend = addLegend(figure.querySelector('.legend'), chart, all);
+    const paintIt = () => {
+      paint(chart, all);
+      legend.paintSwatches();
+    };
+    // Shows the series on demand of that name in the colour, or hides it.
+    const pick = (name, shown, color) => {
+      all.forEach((series, i) => {
+        if (!series.onDemand || !series.legend || series.name !== name) return;
+        all.forEach((other) => { if (other.key === series.key) other.color = color; });
+        shown ? legend.add(i) : legend.remove(i);
+      });
+      paintIt();
+    };
+    const names = all.filter((series) => series.onDemand && series.legend).map((series) => series.name);
+    return {figure, names, pick, paint: paintIt};
   }
 
-  const painters = Array.from(document.querySelectorAll('figure.chart'), draw);
-  const paintAll = () => painters.forEach((one) => one());
+  // Colours of picked series: the median has the first of the ten.
+  const pickColor = (slot) => 1 + slot + Math.floor(slot / (kColors - 1));
+
+  // The list to pick series on demand from, for all charts beside each other.
+  function addPickList(group, charts) {
+    const names = [...new Set(charts.flatMap((chart) => chart.names))];
+    if (names.length === 0) return;
+    const what = charts.find((chart) => chart.names.length > 0).figure.dataset.pick;
+    const list = document.createElement('details'), summary = document.createElement('summary');
+    const tools = document.createElement('div'), find = document.createElement('input');
+    const clear = document.createElement('button'), boxes = document.createElement('div');
+    list.className = 'pick';
+    tools.className = 'tools';
+    boxes.className = 'boxes';
+    boxes.setAttribute('role', 'group');
+    boxes.setAttribute('aria-label', what);
+    find.type = 'search';
+    find.placeholder = 'Find by name';
+    find.setAttribute('aria-label', 'Find ' + what + ' by name');
+    clear.type = 'button';
+    clear.textContent = 'Clear all';
+    const taken = new Map();  // name: slot of its colour
+    const tell = () => {
+      summary.textContent = `Show ${what}: ${taken.size || 'none'} of ${names.length} shown`;
+      clear.disabled = taken.size === 0;
+    };
+    const set = (name, shown) => {
+      if (shown) {
+        let slot = 0;
+        while ([...taken.values()].includes(slot)) ++slot;
+        taken.set(name, slot);
+      }
+      charts.forEach((chart) => chart.pick(name, shown, pickColor(taken.get(name))));
+      if (!shown) taken.delete(name);
+      tell();
+    };
+    const rows = names.map((name) => {
+      const label = document.createElement('label'), box = document.createElement('input');
+      box.type = 'checkbox';
+      box.addEventListener('change', () => set(name, box.checked));
+      label.append(box, name);
+      return {name, label, box};
+    });
+    find.addEventListener('input', () => {
+      const part = find.value.toLowerCase();
+      rows.forEach(({name, label}) => { label.hidden = !name.toLowerCase().includes(part); });
+    });
+    clear.addEventListener('click', () => {
+      rows.filter(({box}) => box.checked).forEach(({name, box}) => {
+        box.checked = false;
+        set(name, false);
+      });
+      find.focus();
+    });
+    tell();
+    boxes.append(...rows.map(({label}) => label));
+    tools.append(find, clear);
+    list.append(summary, tools, boxes);
+    group.before(list);
+  }
+
+  const charts = Array.from(document.querySelectorAll('figure.chart'), draw);
+  for (const group of document.querySelectorAll('.charts')) {
+    addPickList(group, charts.filter((chart) => group.contains(chart.figure)));
+  }
+  const paintAll = () => charts.forEach((chart) => chart.paint());
   paintAll();
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', paintAll);
   window.addEventListener('beforeprint', paintAll);  // paper is light
