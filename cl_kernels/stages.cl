@@ -39,7 +39,8 @@ __kernel void countMissing(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* face
   countRays(ray_counters, traced);
 }
 
-/// All border rays of the batch; notes what each hit and, a bit a ray, whether it met a discontinuity.
+/// All border rays of the batch; notes what each hit and, a bit a ray, whether it met a discontinuity. Those
+/// without direction hit nothing and are not counted.
 __kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, StageParams params, SL_BORDER_ARGS,
                           __global uint* border_hits, volatile __global uint* discontinuity_bits,
                           volatile __global uint* ray_counters) {
@@ -59,13 +60,15 @@ __kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, StageParams params, SL_BOR
   }
   traceRays(scene, rays, hits);
   uint bits = 0;
+  uint traced = 0;
   for (uint lane = 0; lane < count; ++lane) {
+    traced += hasDirection(rays[lane]) ? 1 : 0;
     border_hits[first + lane] = hits[lane].triangle;
     insertHit(set, hits[lane].triangle, first + lane + 1);
     bits |= (isDiscontinuity(rays[lane], hits[lane], params) ? 1u : 0u) << lane;
   }
   if (bits != 0) atomic_or(&discontinuity_bits[first >> 5], bits << (first & 31));
-  countRays(ray_counters, count);
+  countRays(ray_counters, traced);
 }
 
 /// Reverse rays 0 .. total - 1 of the items: one a lane.
