@@ -2,8 +2,8 @@
 
 namespace sightline {
 
-// Angles in degrees by series of our own: what depends on them is the same, bit for bit, with every C library;
-// their sines, cosines and arc tangents differ in the last bit.
+// Angles in degrees by series of our own: what depends on them is the same, bit for bit, with every C
+// library; their sines, cosines and arc tangents differ in the last bit.
 
 struct CosSin {
   double cosine;

@@ -88,8 +88,8 @@ TEST(VulkanErrors, WhatTheBudgetForbidsNamesTheBudget) {
   EXPECT_EQ(line.find("device cpu"), std::string::npos) << line;
 }
 
-/// A budget that ends with any of the scene's buffers: those before it may still be on their way to the device
-/// when they are freed.
+/// A budget that ends with any of the scene's buffers: those before it may still be on their way to the
+/// device when they are freed.
 TEST(VulkanErrors, WhatIsFreedAfterAnErrorHasArrived) {
   SL_SKIP_WITHOUT_VULKAN();
   const Scene scene = generateScene("city", 50'000, 7);
