@@ -209,4 +209,8 @@ std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Sce
   return std::make_unique<NaiveDevice>(std::move(inner), scene);
 }
 
+bool isNaiveDevice(const Device& device) {
+  return dynamic_cast<const NaiveDevice*>(&device) != nullptr;
+}
+
 }  // namespace sightline

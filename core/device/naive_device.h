@@ -12,4 +12,7 @@ namespace sightline {
 /// outlives the device.
 std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene);
 
+/// Whether makeNaiveDevice made the device.
+bool isNaiveDevice(const Device& device);
+
 }  // namespace sightline

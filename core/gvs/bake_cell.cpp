@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/device/naive_device.h"
 #include "core/error.h"
 #include "core/gvs/error_bound.h"
 #include "core/gvs/exploration_yield.h"
@@ -430,6 +431,11 @@ class CellBake {
 CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
                  const BakeParams& params, const BakeHooks& hooks) {
   checkParams(params);
+  if (params.method == Method::kNaive && !isNaiveDevice(device)) {
+    throw Error(
+        device.info().id + ": the method naive takes a device of makeNaiveDevice; on this one it is gvs++",
+        kExitUsage);
+  }
   if (hooks.trace != nullptr) *hooks.trace = {};
   CellPvs pvs;
   pvs.cell = cell;
