@@ -60,6 +60,7 @@ class NaiveDevice final : public Device {
       insert(hit.triangle, ray);
       const uint32_t index = ray.index - 1;
       border_hits[index] = hit.triangle;
+      if (!listing) return;
       const PvsEntry& entry = pending[batch.entryOf(index)];
       is_discontinuity[index] = isDiscontinuityOf(scene_, entry, ray.ray, hit, params_) ? 1 : 0;
     };
