@@ -39,7 +39,8 @@ __kernel void countMissing(SL_SCENE_ARGS, SL_SET_ARGS, __global const Face* face
   countRays(ray_counters, traced);
 }
 
-/// All border rays of the batch; notes what each hit and, a bit a ray, whether it met a discontinuity.
+/// All border rays of the batch; notes what each hit and, a bit a ray, whether it met a discontinuity. Those
+/// without direction hit nothing and are not counted.
 __kernel void traceBorder(SL_SCENE_ARGS, SL_SET_ARGS, StageParams params, SL_BORDER_ARGS,
                           __global uint* border_hits, volatile __global uint* discontinuity_bits,
                           volatile __global uint* ray_counters) {

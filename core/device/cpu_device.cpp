@@ -40,18 +40,6 @@ class CpuDevice final : public Device {
     return [rays = borderBatch()](uint32_t number) mutable { return BatchRay{rays(number), number + 1}; };
   }
 
-  /// Generator of one level of the last traceBorder by the original method; positions between samples that
-  /// hit the same have no direction.
-  auto gvsRays(uint32_t level) const {
-    return [this, level, rays = borderRays()](uint32_t slot) mutable {
-      const uint32_t entry = slot / gvsSlots(level) * kGvsPositions;
-      const uint32_t position = gvsPosition(level, slot % gvsSlots(level));
-      const bool divides = level == 0 || gvsDivides(border_hits_[entry + gvsBefore(level, position)],
-                                                    border_hits_[entry + gvsAfter(level, position)]);
-      return divides ? rays(entry + position) : BatchRay{noRay(), 0};
-    };
-  }
-
   /// Generator of the reverse rays of the last traceReverse; excluded ones have no direction.
   auto reverseRays() const {
     return ReverseRays(scene_, faces_, entries_, std::span(discontinuities_).subspan(reverse_first_),
@@ -113,13 +101,19 @@ class CpuDevice final : public Device {
     if (isGvs(params_)) {
       for (uint32_t level = 0; level < kGvsLevels; ++level) {
         rays_ += launch(
-            uint64_t(count) * gvsSlots(level), [&] { return gvsRays(level); }, take);
+            uint64_t(count) * gvsSlots(level),
+            [&] { return GvsLevelRays(level, borderBatch(), border_hits_); }, take);
       }
     } else {
       rays_ += launch(
           total, [&] { return borderRays(); }, take);
     }
-    return {count, listing ? appendDiscontinuities(count) : 0};
+    const size_t before = discontinuities_.size();
+    if (listing) {
+      appendDiscontinuitiesOf(scene_, std::span(entries_).subspan(first), first, border_starts_, border_hits_,
+                              is_discontinuity_, params_, discontinuities_);
+    }
+    return {count, static_cast<uint32_t>(discontinuities_.size() - before)};
   }
 
   void dropDiscontinuities() override {
@@ -270,23 +264,6 @@ class CpuDevice final : public Device {
       if (!set_.takeOverflow()) return total;
       set_.grow(4);
     }
-  }
-
-  /// Appends those of the last traceBorder that get reverse rays; returns their number.
-  uint32_t appendDiscontinuities(uint32_t count) {
-    const size_t before = discontinuities_.size();
-    for (uint32_t e = 0; e < count; ++e) {
-      const uint32_t samples = borderSamplesOf(scene_, entries_[border_first_ + e], params_);
-      for (uint64_t index = border_starts_[e]; index < border_starts_[e + 1]; ++index) {
-        if (is_discontinuity_[index] == 0) continue;
-        const auto k = static_cast<uint32_t>(index - border_starts_[e]);
-        const uint32_t place = borderPlace(k, samples), hit = border_hits_[index];
-        const bool follows = place > 0 && is_discontinuity_[index - 1] != 0 && border_hits_[index - 1] == hit;
-        if (!isGvs(params_) && !keepsDiscontinuity(place, follows, params_)) continue;
-        discontinuities_.push_back({uvec4(border_first_ + e, k, hit, samples)});
-      }
-    }
-    return static_cast<uint32_t>(discontinuities_.size() - before);
   }
 
   /// The ray with this index (1 ..) in the batch that is being collected.

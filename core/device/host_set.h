@@ -4,12 +4,24 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "core/shared/set.h"
 
 namespace sightline {
 
 /// Which capacity the hash set has to begin with; it doubles as needed.
 inline constexpr uint32_t kFirstHashCapacity = 1u << 16;
+
+/// The largest there is: 2^31 slots of two words.
+inline constexpr uint32_t kLargestHashCapacity = 1u << 31;
+
+/// The capacity of a hash set `factor` times as large as one of `capacity` slots. Throws Error where there is
+/// none.
+inline uint32_t grownCapacity(uint32_t capacity, uint32_t factor) {
+  const uint64_t grown = uint64_t(capacity) * factor;
+  if (grown > kLargestHashCapacity) throw Error("the hash set of found triangles is full: use --set array");
+  return static_cast<uint32_t>(grown);
+}
 
 /// The set of found triangles in host memory (core/shared/set.h), array or hash set.
 class HostSet {
@@ -29,21 +41,13 @@ class HostSet {
   /// Whether a launch found no room; lowers the flag.
   bool takeOverflow() { return std::exchange(overflow_, 0u) != 0; }
 
-  /// Makes the hash set `factor` times as large, keeping its contents.
+  /// Makes a hash set `factor` (2, 4, 8 ...) times as large, or more, keeping its contents. An array stays as
+  /// it is: it has a slot for every triangle, and overflows only where a thread lost every race for one, so
+  /// that its launch need but be repeated. Throws Error, and the set stays as it is.
   void grow(uint32_t factor) {
-    HostSet larger(0, true);
-    larger.capacity_ = capacity_ * factor;
-    larger.keys_.assign(larger.capacity_, kNoTriangle);
-    larger.winner_.assign(larger.capacity_, kSlotEmpty);
-    for (uint32_t slot = 0; slot < capacity_; ++slot) {
-      if (keys_[slot] == kNoTriangle) continue;
-      const uint32_t moved = claimSlot(larger.ref(), keys_[slot]);
-      if (moved == kSlotEmpty) return grow(factor * 2);
-      larger.winner_[moved] = winner_[slot];
-    }
-    capacity_ = larger.capacity_;
-    keys_ = std::move(larger.keys_);
-    winner_ = std::move(larger.winner_);
+    if (!isHash()) return;
+    uint32_t capacity = grownCapacity(capacity_, factor);
+    while (!moveTo(capacity)) capacity = grownCapacity(capacity, 2);
   }
 
   /// Empties the set; keeps its capacity.
@@ -57,6 +61,22 @@ class HostSet {
   uint64_t bytes() const { return (keys_.size() + winner_.size() + fresh_.size()) * sizeof(uint32_t); }
 
  private:
+  /// Moves the contents into a table of this capacity. false: one found no slot, and nothing was changed.
+  bool moveTo(uint32_t capacity) {
+    std::vector<uint32_t> keys(capacity, kNoTriangle), winner(capacity, kSlotEmpty);
+    const SetRef larger{keys.data(), winner.data(), fresh_.data(), &overflow_, capacity};
+    for (uint32_t slot = 0; slot < capacity_; ++slot) {
+      if (keys_[slot] == kNoTriangle) continue;
+      const uint32_t moved = claimSlot(larger, keys_[slot]);
+      if (moved == kSlotEmpty) return false;
+      winner[moved] = winner_[slot];
+    }
+    capacity_ = capacity;
+    keys_ = std::move(keys);
+    winner_ = std::move(winner);
+    return true;
+  }
+
   uint32_t capacity_;
   std::vector<uint32_t> keys_, winner_, fresh_;
   uint32_t overflow_ = 0;

@@ -54,25 +54,33 @@ class NaiveDevice final : public Device {
     const uint32_t count = borderBatchEntries(starts, most_rays);
     starts.resize(count + 1);
     const BorderRays batch(scene_, pending, starts, params_);
+    std::vector<uint32_t> border_hits(starts.back(), isGvs(params_) ? kNotTraced : kNoTriangle);
+    std::vector<uint8_t> is_discontinuity(starts.back(), 0);
+    const auto take = [&](const BatchRay& ray, const Hit& hit) {
+      insert(hit.triangle, ray);
+      const uint32_t index = ray.index - 1;
+      border_hits[index] = hit.triangle;
+      if (!listing) return;
+      const PvsEntry& entry = pending[batch.entryOf(index)];
+      is_discontinuity[index] = isDiscontinuityOf(scene_, entry, ray.ray, hit, params_) ? 1 : 0;
+    };
+    for (uint32_t level = 0; isGvs(params_) && level < kGvsLevels; ++level) {
+      trace(
+          uint64_t(count) * gvsSlots(level), [&] { return GvsLevelRays(level, batch, border_hits); }, take);
+    }
+    if (!isGvs(params_)) {
+      trace(
+          starts.back(),
+          [&] {
+            return [rays = batch](uint32_t number) mutable { return BatchRay{rays(number), number + 1}; };
+          },
+          take);
+    }
     const size_t before = discontinuities_.size();
-    uint32_t entry = 0, last_index = 0, last_occluder = 0;
-    trace(
-        starts.back(),
-        [&] {
-          return [rays = batch](uint32_t number) mutable { return BatchRay{rays(number), number + 1}; };
-        },
-        [&](const BatchRay& ray, const Hit& hit) {
-          insert(hit.triangle, ray);
-          if (!listing || !isDiscontinuity(ray.ray, hit, params_)) return;
-          while (starts[entry + 1] < ray.index) ++entry;
-          const uint32_t samples = borderSamplesOf(scene_, pending[entry], params_);
-          const uint32_t k = batch.rayOf(ray.index - 1, entry), place = borderPlace(k, samples);
-          const bool follows = place > 0 && last_index + 1 == ray.index && last_occluder == hit.triangle;
-          last_index = ray.index;
-          last_occluder = hit.triangle;
-          if (!keepsDiscontinuity(place, follows, params_)) return;
-          discontinuities_.push_back({uvec4(first + entry, k, hit.triangle, samples)});
-        });
+    if (listing) {
+      appendDiscontinuitiesOf(scene_, pending, first, starts, border_hits, is_discontinuity, params_,
+                              discontinuities_);
+    }
     return {count, static_cast<uint32_t>(discontinuities_.size() - before)};
   }
 
@@ -200,6 +208,10 @@ class NaiveDevice final : public Device {
 
 std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) {
   return std::make_unique<NaiveDevice>(std::move(inner), scene);
+}
+
+bool isNaiveDevice(const Device& device) {
+  return dynamic_cast<const NaiveDevice*>(&device) != nullptr;
 }
 
 }  // namespace sightline

@@ -8,7 +8,11 @@ namespace sightline {
 /// The naive implementation of gvs++ with which the thesis compares its own (5.5: more than 20 times slower):
 /// every hit travels to the host, duplicates included, and set and queue live there. Rays are made by all of
 /// the host's threads and traced by `inner`, batch by batch; one thread inserts. Gives the set of `inner`,
-/// with the same witnesses. scene: on `inner`, outlives the device.
+/// with the same witnesses, by gvs too: what `inner` itself must find of its own hits. scene: on `inner`,
+/// outlives the device.
 std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene);
+
+/// Whether makeNaiveDevice made the device.
+bool isNaiveDevice(const Device& device);
 
 }  // namespace sightline

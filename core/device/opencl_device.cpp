@@ -185,7 +185,9 @@ class OpenClDevice final : public Device {
   uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {
     const auto slots = static_cast<uint32_t>(slotCount(segment));
     launch(missing_, slots, faces_, shifts, segment, counters_);
-    return takeCounters()[kMissingCounter];
+    takeCounters();
+    bookRays();
+    return last_counters_[kMissingCounter];
   }
 
   DeviceCounters counters() override { return {rays_, context_.allocatedBytes(), set_->capacity() > 0}; }
@@ -325,9 +327,14 @@ class OpenClDevice final : public Device {
       if (last_counters_[kOverflowCounter] == 0) break;
       set_->grow(4);
     }
+    bookRays();
+    fresh_ = last_counters_[kFreshCounter];
+  }
+
+  /// Adds up the rays of the counters taken last.
+  void bookRays() {
     const auto rays = last_counters_.begin() + kRayCounter;
     rays_ += std::accumulate(rays, rays + kRayCounters, uint64_t(0));
-    fresh_ = last_counters_[kFreshCounter];
   }
 
   /// Waits for all launches, reads the counters and sets them back to 0.

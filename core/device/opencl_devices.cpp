@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdlib>
+#include <utility>
 
 #include "core/device/select_device.h"
 #include "core/error.h"
@@ -26,16 +27,8 @@ std::string whyUnusable(cl_device_id device) {
   if (!clDeviceValue<cl_bool>(device, CL_DEVICE_AVAILABLE)) return "the device is not available";
   if (!clDeviceValue<cl_bool>(device, CL_DEVICE_COMPILER_AVAILABLE)) return "its driver has no compiler";
   if (!clDeviceValue<cl_bool>(device, CL_DEVICE_ENDIAN_LITTLE)) return "it is big-endian";
-  if (clDeviceValue<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG) == 0) {
-    return "it has no double precision, which close calls of the intersection test take";
-  }
-  const auto config = clDeviceValue<cl_device_fp_config>(device, CL_DEVICE_SINGLE_FP_CONFIG);
-  if (!(config & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)) {
-    return "it does not divide correctly rounded (CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT), so that its results "
-           "would differ from other devices'";
-  }
-  if (!(config & CL_FP_ROUND_TO_NEAREST)) return "it does not round floats to nearest";
-  return {};
+  return whyFloatsDiffer(clDeviceValue<cl_device_fp_config>(device, CL_DEVICE_SINGLE_FP_CONFIG),
+                         clDeviceValue<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG));
 }
 
 OpenClDevice describeDevice(cl_device_id id, size_t index) {
@@ -76,6 +69,21 @@ int rank(const OpenClDevice& device) {
 }
 
 }  // namespace
+
+std::string whyFloatsDiffer(cl_device_fp_config floats, cl_device_fp_config doubles) {
+  if (doubles == 0) return "it has no double precision, which close calls of the intersection test take";
+  const std::pair<cl_device_fp_config, const char*> needed[] = {
+      {CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT, "divide correctly rounded (CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT)"},
+      {CL_FP_ROUND_TO_NEAREST, "round floats to nearest (CL_FP_ROUND_TO_NEAREST)"},
+      {CL_FP_DENORM, "keep floats below 2^-126 (CL_FP_DENORM)"},
+      {CL_FP_INF_NAN, "compute with infinity (CL_FP_INF_NAN)"}};
+  for (const auto& [flag, what] : needed) {
+    if ((floats & flag) == 0) {
+      return fmt::format("it does not {}, so that its results would differ from other devices'", what);
+    }
+  }
+  return {};
+}
 
 std::vector<OpenClDevice> findOpenClDevices() {
   keepCacheInUsersFolder();

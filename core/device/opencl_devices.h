@@ -14,6 +14,10 @@ struct OpenClDevice {
 /// All devices of all platforms; a platform that fails to answer is left out.
 std::vector<OpenClDevice> findOpenClDevices();
 
+/// Why the results of a device with such floats and doubles would differ from other devices', in one line;
+/// empty: they do not. The arguments: CL_DEVICE_SINGLE_FP_CONFIG and CL_DEVICE_DOUBLE_FP_CONFIG.
+std::string whyFloatsDiffer(cl_device_fp_config floats, cl_device_fp_config doubles);
+
 /// The device for a selector (see OpenClContext). Throws Error.
 OpenClDevice selectOpenClDevice(const std::string& selector);
 

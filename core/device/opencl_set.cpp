@@ -1,16 +1,8 @@
 #include "core/device/opencl_set.h"
 
 #include "core/device/host_set.h"
-#include "core/error.h"
 
 namespace sightline {
-namespace {
-
-/// Largest table: 2^31 slots of two words.
-constexpr uint32_t kLargestCapacity = 1u << 31;
-
-}  // namespace
-
 OpenClSet::OpenClSet(OpenClContext& context, const ClBuffer& overflow, uint32_t triangle_count, bool hash)
     : context_(context),
       rehash_(context.kernel("rehash")),
@@ -47,13 +39,14 @@ bool OpenClSet::takeOverflow() {
 }
 
 void OpenClSet::grow(uint32_t factor) {
-  const ClBuffer old_keys = std::move(keys_), old_winner = std::move(winner_);
+  if (capacity_ == 0) return;
   const uint32_t old_capacity = capacity_;
-  for (uint64_t capacity = uint64_t(old_capacity) * factor;; capacity *= 2) {
-    if (capacity > kLargestCapacity) throw Error("the hash set of found triangles is full: use --set array");
-    allocate(static_cast<uint32_t>(capacity));
-    context_.fill(keys_, kNoTriangle, capacity * 4);
-    context_.fill(winner_, kSlotEmpty, capacity * 4);
+  uint32_t capacity = grownCapacity(old_capacity, factor);
+  const ClBuffer old_keys = std::move(keys_), old_winner = std::move(winner_);
+  for (;; capacity = grownCapacity(capacity, 2)) {
+    allocate(capacity);
+    context_.fill(keys_, kNoTriangle, uint64_t(capacity) * 4);
+    context_.fill(winner_, kSlotEmpty, uint64_t(capacity) * 4);
     context_.launch(rehash_, old_capacity, 64, old_keys, old_winner, old_capacity, keys_, winner_, fresh_,
                     overflow_, capacity_);
     if (!takeOverflow()) return;

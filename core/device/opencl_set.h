@@ -21,7 +21,8 @@ class OpenClSet {
 
   /// Empties the set; keeps its capacity.
   void clear();
-  /// Makes the hash set `factor` times as large, keeping its contents.
+  /// Makes a hash set `factor` times as large, or more, keeping its contents; an array stays as it is
+  /// (HostSet::grow). Throws Error.
   void grow(uint32_t factor);
   /// Doubles the hash set until `size` triangles fill at most half of it.
   void fit(uint32_t size);

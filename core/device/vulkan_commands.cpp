@@ -28,6 +28,13 @@ VulkanCommands::VulkanCommands(const VulkanContext& context, VkQueue queue, uint
             }};
 }
 
+VulkanCommands::~VulkanCommands() {
+  // Whatever it says: a lost device runs nothing any more.
+  if (submitted_) {
+    context_.api().vkWaitForFences(context_.device(), 1, fence_.address(), VK_TRUE, UINT64_MAX);
+  }
+}
+
 VkCommandBuffer VulkanCommands::next() {
   if (!recording_) {
     wait();
@@ -101,10 +108,10 @@ void VulkanCommands::finish() {
 }
 
 VulkanUpload::VulkanUpload(const VulkanContext& context)
-    : halves_{{{context, context.transferQueue(), context.transferFamily()},
-               context.buffer(kStagingBytes, "staging memory", VulkanMemory::kUpload)},
-              {{context, context.transferQueue(), context.transferFamily()},
-               context.buffer(kStagingBytes, "staging memory", VulkanMemory::kUpload)}} {}
+    : halves_{{context.buffer(kStagingBytes, "staging memory", VulkanMemory::kUpload),
+               {context, context.transferQueue(), context.transferFamily()}},
+              {context.buffer(kStagingBytes, "staging memory", VulkanMemory::kUpload),
+               {context, context.transferQueue(), context.transferFamily()}}} {}
 
 void VulkanUpload::write(const VulkanBuffer& target, const void* data, uint64_t bytes) {
   write(target, bytes, 4, [&](void* piece, uint64_t first, uint64_t count) {

@@ -6,10 +6,15 @@
 
 namespace sightline {
 
-/// Records commands and runs them. Every command waits for those before it, but for updateBeside.
+/// Records commands and runs them. Every command waits for those before it, but for updateBeside. What they
+/// use must live as long as they run; when they go they wait for what was submitted, so after an error too it
+/// is enough that buffers are declared before them.
 class VulkanCommands {
  public:
   VulkanCommands(const VulkanContext& context, VkQueue queue, uint32_t family);
+  VulkanCommands(const VulkanCommands&) = delete;
+  VulkanCommands& operator=(const VulkanCommands&) = delete;
+  ~VulkanCommands();
 
   void fill(const VulkanBuffer& buffer, uint32_t value, uint64_t bytes, uint64_t offset = 0);
   /// At most 65,536 bytes, a multiple of 4.
@@ -67,8 +72,8 @@ class VulkanUpload {
  private:
   static constexpr uint64_t kStagingBytes = 16u << 20;
   struct Half {
-    VulkanCommands commands;
     VulkanBuffer staging;
+    VulkanCommands commands;  // goes, and waits, first
   };
   Half halves_[2];
   int turn_ = 0;

@@ -1,16 +1,8 @@
 #include "core/device/vulkan_set.h"
 
 #include "core/device/host_set.h"
-#include "core/error.h"
 
 namespace sightline {
-namespace {
-
-/// Largest table: 2^31 slots of two words.
-constexpr uint64_t kLargestCapacity = 1u << 31;
-
-}  // namespace
-
 VulkanSet::VulkanSet(const VulkanContext& context, VulkanRunner& runner, uint32_t triangle_count, bool hash)
     : context_(context),
       runner_(runner),
@@ -48,14 +40,15 @@ void VulkanSet::clear() {
 }
 
 void VulkanSet::grow(uint32_t factor) {
+  if (capacity_ == 0) return;
+  const uint32_t old_capacity = capacity_;
+  uint32_t capacity = grownCapacity(old_capacity, factor);
   runner_.commands.finish();
   const VulkanBuffer old_keys = std::move(keys_), old_winner = std::move(winner_);
-  const uint32_t old_capacity = capacity_;
   runner_.launch.old_keys = old_keys.address();
   runner_.launch.old_winner = old_winner.address();
-  for (uint64_t capacity = uint64_t(old_capacity) * factor;; capacity *= 2) {
-    if (capacity > kLargestCapacity) throw Error("the hash set of found triangles is full: use --set array");
-    allocate(static_cast<uint32_t>(capacity));
+  for (;; capacity = grownCapacity(capacity, 2)) {
+    allocate(capacity);
     empty();
     runner_.run(rehash_, old_capacity);
     if (!runner_.takeCounts().overflow) return;

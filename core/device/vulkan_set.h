@@ -15,7 +15,8 @@ class VulkanSet {
 
   /// Empties the set; keeps its capacity.
   void clear();
-  /// Makes the hash set `factor` times as large, keeping its contents. The counts must have been taken.
+  /// Makes a hash set `factor` times as large, or more, keeping its contents; an array stays as it is
+  /// (HostSet::grow). The counts must have been taken. Throws Error.
   void grow(uint32_t factor);
   /// Doubles the hash set until `size` triangles fill at most half of it. As grow.
   void fit(uint32_t size);

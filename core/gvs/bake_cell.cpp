@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/device/naive_device.h"
 #include "core/error.h"
 #include "core/gvs/error_bound.h"
 #include "core/gvs/exploration_yield.h"
@@ -452,6 +453,11 @@ CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint3
   checkParams(params);
   if (const auto problem = cellProblem(cell)) {
     throw Error(fmt::format("cell {}, {}: {}", cell_index, cell.name, problem->text()), kExitUsage);
+  }
+  if (params.method == Method::kNaive && !isNaiveDevice(device)) {
+    throw Error(
+        device.info().id + ": the method naive takes a device of makeNaiveDevice; on this one it is gvs++",
+        kExitUsage);
   }
   if (hooks.trace != nullptr) *hooks.trace = {};
   CellPvs pvs;

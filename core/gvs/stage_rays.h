@@ -156,6 +156,28 @@ class BorderRays {
   BorderEdge sides_[3];
 };
 
+/// The border rays of one level of the original method by slot; positions between samples that hit the same
+/// have no direction. Call it with ascending slots.
+class GvsLevelRays {
+ public:
+  /// hits: of the batch's rays by number, of the levels before; kNotTraced where there was none.
+  GvsLevelRays(uint32_t level, const BorderRays& rays, std::span<const uint32_t> hits)
+      : level_(level), rays_(rays), hits_(hits) {}
+
+  BatchRay operator()(uint32_t slot) {
+    const uint32_t first = slot / gvsSlots(level_) * kGvsPositions;
+    const uint32_t position = gvsPosition(level_, slot % gvsSlots(level_));
+    const bool divides = level_ == 0 || gvsDivides(hits_[first + gvsBefore(level_, position)],
+                                                   hits_[first + gvsAfter(level_, position)]);
+    return divides ? BatchRay{rays_(first + position), first + position + 1} : BatchRay{noRay(), 0};
+  }
+
+ private:
+  uint32_t level_;
+  BorderRays rays_;
+  std::span<const uint32_t> hits_;
+};
+
 /// Whether a border ray of the entry meets a discontinuity.
 inline bool isDiscontinuityOf(const Scene& scene, const PvsEntry& entry, const Ray& ray, const Hit& hit,
                               const StageParams& params) {
@@ -163,6 +185,26 @@ inline bool isDiscontinuityOf(const Scene& scene, const PvsEntry& entry, const R
   const uint32_t t = entry.origin_triangle.w;
   return isGvsDiscontinuity(ray, hit, cornerOf(scene, t, 0), cornerOf(scene, t, 1), cornerOf(scene, t, 2),
                             params);
+}
+
+/// Appends the discontinuities of a batch that get reverse rays. pending: the list's entries from `first` on;
+/// starts: borderStarts of those of the batch; by the rays' numbers, hits: what they hit, and
+/// is_discontinuity: isDiscontinuityOf.
+inline void appendDiscontinuitiesOf(const Scene& scene, std::span<const PvsEntry> pending, uint32_t first,
+                                    std::span<const uint64_t> starts, std::span<const uint32_t> hits,
+                                    std::span<const uint8_t> is_discontinuity, const StageParams& params,
+                                    std::vector<Discontinuity>& list) {
+  for (uint32_t e = 0; e + 1 < starts.size(); ++e) {
+    const uint32_t samples = borderSamplesOf(scene, pending[e], params);
+    for (uint64_t index = starts[e]; index < starts[e + 1]; ++index) {
+      if (is_discontinuity[index] == 0) continue;
+      const auto k = static_cast<uint32_t>(index - starts[e]);
+      const uint32_t place = borderPlace(k, samples);
+      const bool follows = place > 0 && is_discontinuity[index - 1] != 0 && hits[index - 1] == hits[index];
+      if (!isGvs(params) && !keepsDiscontinuity(place, follows, params)) continue;
+      list.push_back({uvec4(first + e, k, hits[index], samples)});
+    }
+  }
 }
 
 /// The item of a discontinuity of gvs++ for its reverse rays. border: the ray that met it; number: its

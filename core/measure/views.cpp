@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "core/scene/rotation.h"
 #include "core/shared/halton.h"
 #include "core/splitmix.h"
 
@@ -20,14 +20,14 @@ vec4 rounded(const glm::dvec3& v) {
 /// From the axis of the sphere (y, so that the poles are straight up and down) and around it.
 glm::dvec3 onSphere(double height, double turn) {
   const double y = 1 - 2 * height, radius = std::sqrt(std::max(0.0, 1 - y * y));
-  const double angle = 2 * std::numbers::pi * turn;
-  return {radius * std::cos(angle), y, radius * std::sin(angle)};
+  const CosSin around = cosSinDegrees(360 * turn);
+  return {radius * around.cosine, y, radius * around.sine};
 }
 
 }  // namespace
 
 CellViews::CellViews(const ViewCell& cell, double fov)
-    : faces_(cellFaces(cell)), flat_(cell.flat()), tangent_(std::tan(fov * std::numbers::pi / 360)) {
+    : faces_(cellFaces(cell)), flat_(cell.flat()), tangent_(tanDegrees(fov / 2)) {
   double sum = 0;
   for (const Face& face : faces_) {
     sum += glm::length(glm::dvec3(face.edge_u)) * glm::length(glm::dvec3(face.edge_v));

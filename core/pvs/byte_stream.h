@@ -26,7 +26,10 @@ class ByteWriter {
     number(uint32_t(value.size()));
     bytes_.insert(bytes_.end(), value.begin(), value.end());
   }
-  void raw(std::span<const uint8_t> value) { bytes_.insert(bytes_.end(), value.begin(), value.end()); }
+  void raw(std::span<const uint8_t> value) {
+    bytes_.reserve(bytes_.size() + value.size());  // else GCC 12 sees a copy out of bounds here, wrongly
+    bytes_.insert(bytes_.end(), value.begin(), value.end());
+  }
   const Bytes& bytes() const { return bytes_; }
 
  private:

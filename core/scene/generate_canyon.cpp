@@ -7,6 +7,7 @@
 #include "core/scene/canyon_terrain.h"
 #include "core/scene/generator_random.h"
 #include "core/scene/rocks.h"
+#include "core/scene/rotation.h"
 #include "core/scene/scene_generators.h"
 
 namespace sightline {
@@ -105,8 +106,6 @@ void addBridges(std::vector<ScenePart>& parts, const Terrain& terrain, uint64_t 
   }
 }
 
-constexpr double kDegrees = 57.29577951308232;
-
 /// A long, narrow box over the river near x, as long as the meander allows (at most `longest`).
 ViewCell riverCell(const CanyonTerrain& terrain, const char* name, double x, double longest) {
   const double lane = kFreeLane * terrain.width();
@@ -124,7 +123,7 @@ ViewCell riverCell(const CanyonTerrain& terrain, const char* name, double x, dou
     return {name,
             {x, bottom + 1, (z0 + z1) / 2},
             {width, 2, std::min(length, run)},
-            {0, std::atan2(dx, dz) * kDegrees, 0}};
+            {0, atan2Degrees(dx, dz), 0}};
   }
 }
 

@@ -1,27 +1,10 @@
 #include "core/scene/view_cell.h"
 
-#include <cmath>
-
 #include "core/scene/cell_frame.h"
+#include "core/scene/rotation.h"
 
 namespace sightline {
 namespace {
-
-struct CosSin {
-  double cosine;
-  double sine;
-};
-
-/// Exact at the multiples of 90 degrees.
-CosSin cosSinDegrees(double degrees) {
-  const double reduced = std::remainder(degrees, 360.0);  // exact
-  if (reduced == 0.0) return {1.0, 0.0};
-  if (reduced == 90.0) return {0.0, 1.0};
-  if (reduced == -90.0) return {0.0, -1.0};
-  if (std::fabs(reduced) == 180.0) return {-1.0, 0.0};
-  const double radians = reduced * (3.14159265358979323846 / 180.0);
-  return {std::cos(radians), std::sin(radians)};
-}
 
 /// Rounds to float; a negative zero becomes a positive one, so that equal boxes give equal bits.
 glm::vec4 rounded(const glm::dvec3& value) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/device/naive_device.h"
+#include "core/error.h"
 #include "core/scene/generate.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"
@@ -224,6 +225,21 @@ TEST_P(Methods, NaiveIsGvsppWithTheSetOnTheHost) {
     EXPECT_EQ(pvs.stats.border.rays, expected.stats.border.rays);
     EXPECT_EQ(pvs.stats.reverse.rays, expected.stats.reverse.rays);
     EXPECT_EQ(pvs.stats.missing_rays, expected.stats.missing_rays);
+  }
+}
+
+/// The set would be right, but called naive where it is not: a comparison of methods would time gvs++ twice.
+TEST_P(Methods, NaiveIsRefusedOnADeviceWithItsOwnSet) {
+  SceneOfBoxes boxes;
+  boxes.addBox({-5, 0, -5}, {5, 3, 5});
+  try {
+    bakeOn(GetParam(), boxes.finish(), {"cell", {0, 1.5, 0}, {1, 1, 1}}, params(Method::kNaive));
+    FAIL() << "expected an Error";
+  } catch (const Error& error) {
+    const std::string line = error.what();
+    EXPECT_NE(line.find("naive"), std::string::npos) << line;
+    EXPECT_NE(line.find("makeNaiveDevice"), std::string::npos) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/device/opencl_devices.h"
 #include "core/error.h"
 
 namespace sightline {
@@ -32,6 +33,25 @@ TEST_F(OpenCl, IsSelectedByIndexAndByPartOfItsName) {
   std::string part = devices_[0].name.substr(1, 8);
   for (char& c : part) c = char(std::toupper(static_cast<unsigned char>(c)));
   EXPECT_EQ(OpenClContext("opencl:" + part).info().id, "opencl:0");
+}
+
+/// Every ability that the same results take, one line each.
+TEST(OpenClFloats, EachMissingAbilityIsNamed) {
+  const cl_device_fp_config good =
+      CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST | CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT;
+  const cl_device_fp_config good_double = CL_FP_DENORM | CL_FP_INF_NAN | CL_FP_ROUND_TO_NEAREST;
+  EXPECT_EQ(whyFloatsDiffer(good, good_double), "");
+  const auto expectReason = [&](cl_device_fp_config floats, cl_device_fp_config doubles, const char* part) {
+    const std::string line = whyFloatsDiffer(floats, doubles);
+    EXPECT_NE(line.find(part), std::string::npos) << line;
+    EXPECT_EQ(line.find('\n'), std::string::npos) << line;
+  };
+  expectReason(good, 0, "double precision");
+  expectReason(good & ~cl_device_fp_config(CL_FP_DENORM), good_double, "CL_FP_DENORM");
+  expectReason(good & ~cl_device_fp_config(CL_FP_INF_NAN), good_double, "CL_FP_INF_NAN");
+  expectReason(good & ~cl_device_fp_config(CL_FP_ROUND_TO_NEAREST), good_double, "CL_FP_ROUND_TO_NEAREST");
+  expectReason(good & ~cl_device_fp_config(CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT), good_double,
+               "CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT");
 }
 
 TEST_F(OpenCl, UnknownSelectorsAreToldWhatThereIs) {

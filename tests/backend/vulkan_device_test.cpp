@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/device/cpu_tracer.h"
+#include "core/device/naive_device.h"
 #include "core/error.h"
 #include "core/gvs/random_segment.h"
 #include "core/scene/generate.h"
@@ -65,7 +66,7 @@ class VulkanDeviceTest : public testing::Test {
   }
 
   void expectRepeatable(const BakeParams& p) const;
-  void expectAsTheReference(const BakeParams& p) const;
+  void expectWhatTheDriverHits(const BakeParams& p) const;
 
   const Scene scene_ = generateScene("city", 20'000, 7);
   const ViewCell cell_ = generateCells("city", 20'000, 7).front();
@@ -160,23 +161,21 @@ void VulkanDeviceTest::expectRepeatable(const BakeParams& p) const {
   }
 }
 
-/// What Vulkan finds and the reference does not, or the other way round, is little, and its witnesses hold.
-TEST_F(VulkanDeviceTest, BakesWhatTheReferenceBakes) {
-  expectAsTheReference(params());
+/// The set, to the last witness, is the one of the driver's own hits of rays that the host makes; and nearly
+/// all witnesses hit what the reference hits.
+TEST_F(VulkanDeviceTest, BakesWhatTheDriverHits) {
+  expectWhatTheDriverHits(params());
 }
-TEST_F(VulkanDeviceTest, BakesByGvsWhatTheReferenceBakes) {
-  expectAsTheReference(params(Method::kGvs));
+TEST_F(VulkanDeviceTest, BakesByGvsWhatTheDriverHits) {
+  expectWhatTheDriverHits(params(Method::kGvs));
 }
 
-void VulkanDeviceTest::expectAsTheReference(const BakeParams& p) const {
-  const CellPvs pvs = bakeOn("vulkan", scene_, cell_, p);
-  const CellPvs expected = bakeOn("cpu", scene_, cell_, p);
+void VulkanDeviceTest::expectWhatTheDriverHits(const BakeParams& p) const {
   const Bvh bvh = buildBvh(scene_.positions, scene_.triangles);
+  const CellPvs pvs = bakeCell(*makeDevice("vulkan", scene_, bvh), scene_, cell_, 0, p);
+  const auto on_host = makeNaiveDevice(makeDevice("vulkan", scene_, bvh), scene_);
+  expectSame(pvs, bakeCell(*on_host, scene_, cell_, 0, p), "the driver's hits");
   const CpuTracer reference(scene_, bvh);
-  std::vector<uint32_t> difference;
-  std::set_symmetric_difference(pvs.triangles.begin(), pvs.triangles.end(), expected.triangles.begin(),
-                                expected.triangles.end(), std::back_inserter(difference));
-  EXPECT_LE(difference.size(), expected.triangles.size() / 20);
   size_t other_hits = 0;
   for (size_t i = 0; i < pvs.triangles.size(); ++i) {
     const Witness& witness = pvs.witnesses[i];

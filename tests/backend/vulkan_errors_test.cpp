@@ -4,7 +4,9 @@
 #include <cstdlib>
 
 #include "core/device/vulkan_commands.h"
+#include "core/device/vulkan_scene.h"
 #include "core/error.h"
+#include "core/scene/generate.h"
 #include "tests/support/vulkan.h"
 
 namespace sightline {
@@ -84,6 +86,48 @@ TEST(VulkanErrors, WhatTheBudgetForbidsNamesTheBudget) {
   const std::string line = lineOf([&] { context.buffer(2u << 20, "hits"); });
   expectLine(line, {"hits", "of the 1.0 MiB", "give a larger --memory-budget, or leave it out"});
   EXPECT_EQ(line.find("device cpu"), std::string::npos) << line;
+}
+
+/// A budget that ends with any of the scene's buffers: those before it may still be on their way to the
+/// device when they are freed.
+TEST(VulkanErrors, WhatIsFreedAfterAnErrorHasArrived) {
+  SL_SKIP_WITHOUT_VULKAN();
+  const Scene scene = generateScene("city", 50'000, 7);
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const uint64_t corners = scene.triangles.size() * 36, ids = scene.triangles.size() * 4;
+  uint64_t staging = 0;
+  {
+    const VulkanContext context("vulkan", false);
+    const VulkanUpload upload(context);
+    staging = context.allocatedBytes();
+  }
+  const std::pair<uint64_t, const char*> ends[] = {{corners - 1, "triangles of the scene"},
+                                                   {corners + ids - 1, "ids of the triangles"},
+                                                   {corners + 2 * ids - 1, "index of triangles"},
+                                                   {corners + 2 * ids, "parts of the scene"},
+                                                   {corners + 2 * ids + 64, "acceleration structure"}};
+  for (const auto& [bytes, what] : ends) {
+    const VulkanContext context("vulkan", false, staging + bytes);
+    expectLine(lineOf([&] { uploadVulkanScene(context, scene, bvh, 0); }), {what, "--memory-budget"});
+    EXPECT_EQ(context.allocatedBytes(), 0u) << what;
+  }
+}
+
+/// Commands that run when they go are waited for, and what an upload reads from goes after them.
+TEST(VulkanErrors, CommandsThatGoAreWaitedFor) {
+  SL_SKIP_WITHOUT_VULKAN();
+  const VulkanContext context("vulkan", false);
+  const std::vector<uint32_t> words(6u << 20, 7);
+  const VulkanBuffer target = context.buffer(words.size() * 4, "test");
+  for (int i = 0; i < 5; ++i) {
+    VulkanUpload upload(context);
+    upload.write(target, words.data(), words.size() * 4);
+  }
+  for (int i = 0; i < 5; ++i) {
+    VulkanCommands commands(context, context.queue(), context.queueFamily());
+    commands.fill(target, uint32_t(i), words.size() * 4);
+    commands.submit();
+  }
 }
 
 /// Under validation, as CTest runs the tests, a mistake ends the process; so does a missing barrier.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <random>
 
+#include "core/scene/cell_frame.h"
+
 namespace sightline {
 namespace {
 
@@ -99,6 +101,13 @@ TEST(CellFaces, RotationIsXThenYThenZ) {
                 1e-6f);
     }
   }
+}
+
+/// Not the C library's sines, which differ from one to the next: glibc 2.36 has 0x1.0000000000001p-1 here.
+TEST(CellFaces, RotationDoesNotDependOnTheCLibrary) {
+  const CellFrame frame = cellFrame(makeCell({2.0, 4.0, 6.0}, {0, 60, 0}));
+  EXPECT_EQ(frame.axes[0], glm::dvec3(0.5, 0, -0x1.bb67ae8584caap-1));
+  EXPECT_EQ(frame.axes[2], glm::dvec3(0x1.bb67ae8584caap-1, 0, 0.5));
 }
 
 TEST(CellFaces, FacesLieOutwardsOfTheCenter) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "cl_kernels/program_source.h"
+#include "core/shared/border.h"
+#include "core/shared/reverse.h"
 #include "core/shared/stage_params.h"
 #include "core/shared/view_ray.h"
 
@@ -15,6 +16,9 @@ TEST(Layout, StructsInBuffersHaveTheSizesOfAllThreeLanguages) {
   EXPECT_EQ(sizeof(StageParams), 96u);
   EXPECT_EQ(sizeof(RandomSegment), 64u);
   EXPECT_EQ(sizeof(ViewFrame), 64u);
+  EXPECT_EQ(sizeof(BorderEdge), 48u);
+  EXPECT_EQ(sizeof(Discontinuity), 16u);
+  EXPECT_EQ(sizeof(ReverseItem), 80u);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/device/host_set.h"
+#include "core/error.h"
 
 namespace sightline {
 namespace {
@@ -64,6 +65,26 @@ TEST_P(Set, OldTrianglesStayOld) {
   EXPECT_EQ(set.fresh()[0] | set.fresh()[2] | set.fresh()[3], 0u);
 }
 
+/// An array overflows where a thread loses every race for a slot; the launch is repeated and must find the set
+/// as it was.
+TEST_P(Set, GrowingAfterAnOverflowLosesNothing) {
+  HostSet set(100, GetParam());
+  insertHit(set.ref(), 42, 9);
+  ++*set.ref().overflow;
+  ASSERT_TRUE(set.takeOverflow());
+  const uint64_t bytes = set.bytes();
+  set.grow(4);
+  ASSERT_GE(set.bytes(), bytes);
+  EXPECT_EQ(set.isHash(), GetParam());
+  insertHit(set.ref(), 42, 7);
+  insertHit(set.ref(), 99, 8);
+  EXPECT_FALSE(set.takeOverflow());
+  ASSERT_TRUE(isInSet(set.ref(), 42));
+  EXPECT_EQ(set.ref().winner[findSlot(set.ref(), 42)], 7u);
+  EXPECT_TRUE(isInSet(set.ref(), 99));
+  EXPECT_FALSE(isInSet(set.ref(), 98));
+}
+
 INSTANTIATE_TEST_SUITE_P(Kinds, Set, testing::Bool(),
                          [](const auto& kind) { return std::string(kind.param ? "Hash" : "Array"); });
 
@@ -85,6 +106,22 @@ TEST(HashSet, FullTableRaisesTheFlagAndGrowingKeepsEverything) {
   }
   for (uint32_t id = 0; id < capacity + 1000; ++id) insertHit(set.ref(), id, id + 1);
   EXPECT_FALSE(set.takeOverflow());
+}
+
+/// 2^16 slots times 2^16 are none in 32 bits.
+TEST(HashSet, GrowingPastTheLargestTableIsAnError) {
+  HostSet set(kTriangles, true);
+  insertHit(set.ref(), 42, 9);
+  for (const uint32_t factor : {1u << 16, 1u << 20, 1u << 31}) {
+    try {
+      set.grow(factor);
+      FAIL() << factor;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("--set array"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(set.capacity(), kFirstHashCapacity);
+    EXPECT_TRUE(isInSet(set.ref(), 42));
+  }
 }
 
 TEST(HashSet, MixIsABijection) {
