@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/cli/device_check.h"
+#include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/gvs/thesis_params.h"
 
@@ -20,7 +21,7 @@ void declareMethod(CLI::App& command, BakeParams& params) {
           "--method", [&params](const std::string& name) { params.method = *methodOf(name); },
           "gvs++; gvs: the original, with fewer border and reverse rays; random: random rays alone; raster: "
           "drawn hemicubes, on vulkan only; naive: gvs++ with the set on the host, for comparison")
-      ->check(CLI::IsMember(bakeMethods()))
+      ->check(oneOf(bakeMethods()))
       ->type_name("NAME")
       ->default_str(methodName(params.method))
       ->group(kParamsGroup);
@@ -93,7 +94,7 @@ void declareSampling(CLI::App& command, BakeParams& params) {
           "--order", [&params](const std::string& name) { params.order = *orderOf(name); },
           "yield: the kind of ray that finds most goes first; queue: reverse rays of a batch follow its "
           "border rays, as in the thesis")
-      ->check(CLI::IsMember({"yield", "queue"}))
+      ->check(oneOf({"yield", "queue"}))
       ->type_name("NAME")
       ->default_str(orderName(params.order))
       ->group(kParamsGroup);
@@ -135,7 +136,7 @@ void declareMachine(CLI::App& command, std::string& device, DeviceOptions& optio
             ->capture_default_str());
   const auto setKind = [&options](const std::string& name) { options.set = kSets.at(name); };
   group(command.add_option_function<std::string>("--set", setKind, "how the set is kept")
-            ->check(CLI::IsMember({"auto", "array", "hash"}))
+            ->check(oneOf({"auto", "array", "hash"}))
             ->type_name("KIND"));
   group(command
             .add_option("--memory-budget", options.memory_budget_bytes,

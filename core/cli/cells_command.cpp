@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/cli/commands.h"
+#include "core/cli/name_checks.h"
 #include "core/error.h"
 #include "core/scene/contained.h"
 #include "core/scene/file_io.h"
@@ -157,7 +158,7 @@ void addCellsCommand(CLI::App& app) {
   command
       ->add_option("--free-side", a->free_side,
                    "front: keep boxes that see front faces; back: that see back faces; any: both")
-      ->check(CLI::IsMember({"front", "back", "any"}))
+      ->check(oneOf({"front", "back", "any"}))
       ->capture_default_str();
   command->add_option("--path", a->path, "Boxes along these points: x,y,z x,y,z ..., or a file");
   command->add_option("--width", a->path_options.width, "Of a box on the path, sideways")

@@ -162,7 +162,8 @@ void declareComparison(CLI::App& command, CompareCommand& options) {
   CompareOptions& compare = options.options;
   command.add_option("--methods", options.methods, "methods to compare (default: gvs++,gvs,random)")
       ->delimiter(',')
-      ->check(CLI::IsMember(bakeMethods()))
+      ->allow_extra_args(false)
+      ->check(oneOf(bakeMethods()))
       ->type_name("NAME,...");
   command.add_option("--rays", compare.params.max_rays, "budget of a cell: so many rays")
       ->check(between(1, 1e18))

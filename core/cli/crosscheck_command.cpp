@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
@@ -125,6 +126,12 @@ void run(const CrosscheckCommand& command) {
   if (!past.empty()) throw ExitCode{kExitPastLimit};
 }
 
+std::vector<std::string> allKinds() {
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < kRayKinds; ++i) names.push_back(rayKindName(RayKind(i)));
+  return names;
+}
+
 void declareLimits(CLI::App& command, CrosscheckLimits& limits) {
   const auto count = [&](const char* name, auto& limit, const char* help) {
     command.add_option(name, limit, help)
@@ -150,6 +157,8 @@ void addCrosscheckCommand(CLI::App& app) {
   command->add_option("--devices", options->devices, "devices to compare, the first is compared with")
       ->required()
       ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(deviceName())
       ->type_name("A,B,...");
   command->add_option("--rays", options->options.rays, "rays of each kind, over all cells")
       ->check(CLI::Range(uint64_t(1), uint64_t(1) << 40).description(""))
@@ -160,6 +169,8 @@ void addCrosscheckCommand(CLI::App& app) {
                    "random, border, reverse, vertex, edge, along-edge, axis, grazing, plane, far-tiny "
                    "(default: all)")
       ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(oneOf(allKinds()).description(""))
       ->type_name("KIND,...");
   command->add_option("--seed", options->options.seed, "seed of the rays")
       ->check(wholeNumber())
@@ -203,9 +214,7 @@ void addCrosscheckCommand(CLI::App& app) {
       throw CLI::ValidationError("--pvs", "compares the sets of two devices; name another in --devices");
     }
     for (const std::string& name : options->kinds) {
-      const auto kind = rayKindOf(name);
-      if (!kind) throw CLI::ValidationError("--kinds", "no kind of ray \"" + name + "\"; see --help");
-      options->options.kinds.push_back(*kind);
+      options->options.kinds.push_back(*rayKindOf(name));
     }
     run(*options);
   });

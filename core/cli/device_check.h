@@ -1,7 +1,9 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
+#include "core/cli/nearest.h"
 #include "core/device/device.h"
 
 namespace sightline {
@@ -11,7 +13,9 @@ inline CLI::Validator deviceName() {
   return CLI::Validator(
       [](std::string& name) {
         if (isDeviceName(name)) return std::string();
-        return "no device \"" + name + "\"; sightline devices lists what can run here";
+        const std::vector<std::string> kinds = {"cpu", "opencl", "vulkan"};
+        return "no device \"" + name + "\"; sightline devices lists what can run here" +
+               didYouMean(name, kinds);
       },
       "");
 }

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/cli/commands.h"
+#include "core/cli/name_checks.h"
 #include "core/error.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
@@ -65,7 +66,7 @@ void addExportCommand(CLI::App& app) {
       ->type_name("NAME|INDEX");
   command->add_option("--format", options->format, "ids, obj, glb or json")
       ->required()
-      ->check(CLI::IsMember({"ids", "obj", "glb", "json"}))
+      ->check(oneOf({"ids", "obj", "glb", "json"}))
       ->type_name("FORMAT");
   command->add_option("-o,--output", options->out)->required()->type_name("FILE");
   command->add_option("--scene", options->scene, "the baked scene: for obj and glb, and for json's objects")

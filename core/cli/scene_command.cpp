@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/report/text.h"
 #include "core/scene/file_io.h"
@@ -36,6 +37,12 @@ void run(const SceneArguments& arguments) {
   fmt::print("{}: {}\n", arguments.cells, counted(cells.size(), "view cell"));
 }
 
+std::vector<std::string> sceneNames() {
+  std::vector<std::string> names;
+  for (const GeneratedSceneInfo& info : generatedScenes()) names.push_back(info.name);
+  return names;
+}
+
 std::string footer() {
   std::string text = "Scenes:\n";
   for (const GeneratedSceneInfo& info : generatedScenes()) {
@@ -53,7 +60,9 @@ std::string footer() {
 void addSceneCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("scene", "Generate a scene, and view cells that fit it");
   const auto arguments = std::make_shared<SceneArguments>();
-  command->add_option("NAME", arguments->name, "city, canyon, plant or bistro")->required();
+  command->add_option("NAME", arguments->name, "city, canyon, plant or bistro")
+      ->required()
+      ->check(oneOf(sceneNames()));
   command->add_option("-o,--output", arguments->output, "File to write: .obj or .glb")->required();
   command
       ->add_option("--triangles", arguments->triangles,
