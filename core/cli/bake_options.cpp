@@ -13,6 +13,8 @@
 namespace sightline {
 namespace {
 
+constexpr uint64_t kMostRays = 1'000'000'000'000'000'000;
+constexpr uint64_t kMostValidationRays = 1'000'000'000'000'000;
 constexpr const char* kParamsGroup = "Parameters (they decide the result)";
 
 void declareMethod(CLI::App& command, BakeParams& params) {
@@ -28,10 +30,10 @@ void declareMethod(CLI::App& command, BakeParams& params) {
 }
 
 template <typename Value>
-void declareCount(CLI::App& command, const char* name, Value& value, double low, double high,
+void declareCount(CLI::App& command, const char* name, Value& value, uint64_t low, uint64_t high,
                   const char* help) {
   command.add_option(name, value, help)
-      ->check(between(low, high))
+      ->transform(wholeNumber(low, high))
       ->type_name("N")
       ->capture_default_str()
       ->group(kParamsGroup);
@@ -47,7 +49,7 @@ void declareNumber(CLI::App& command, const char* name, Value& value, const char
 }
 
 void declareLimits(CLI::App& command, BakeParams& params) {
-  declareCount(command, "--max-rays", params.max_rays, 0, 1e18,
+  declareCount(command, "--max-rays", params.max_rays, 0, kMostRays,
                "stop a cell after so many rays (0: no limit)");
   declareNumber(command, "--max-seconds", params.max_seconds,
                 "stop a cell after so many seconds (0: no limit)");
@@ -58,7 +60,7 @@ void declareLimits(CLI::App& command, BakeParams& params) {
       ->check(between(kSmallestTargetError, 0.999999))
       ->type_name("E")
       ->group(kParamsGroup);
-  declareCount(command, "--validation-rays", params.validation_rays, 0, 1e15,
+  declareCount(command, "--validation-rays", params.validation_rays, 0, kMostValidationRays,
                "rays that measure what a cell missed");
 }
 
@@ -76,7 +78,7 @@ void declareSampling(CLI::App& command, BakeParams& params) {
           "the thesis's samples, distances in world units (0.001, 0.985), order and stop rule; what is "
           "given beside it wins")
       ->group(kParamsGroup);
-  declareCount(command, "--n-rand", params.n_rand, 1, 4294967293.0, "random rays an iteration");
+  declareCount(command, "--n-rand", params.n_rand, 1, 4'294'967'293, "random rays an iteration");
   declareCount(command, "--n-abs-edge", params.n_abs_edge, 0, 1000,
                "samples along each long edge of the border polygon at most");
   declareNumber(command, "--abs-spacing", params.abs_spacing,
@@ -86,7 +88,7 @@ void declareSampling(CLI::App& command, BakeParams& params) {
                "reverse samples along each edge of the cell's faces");
   declareCount(command, "--n-rs-area", params.n_rs_area, 0, 100000, "reverse samples on the cell's faces");
   declareCount(
-      command, "--reverse-stride", params.reverse_stride, 1, 4294967295.0,
+      command, "--reverse-stride", params.reverse_stride, 1, std::numeric_limits<uint32_t>::max(),
       "of neighbouring border samples with the same occluder, reverse samples for the first and every "
       "N-th (1: for all)");
   command
@@ -107,14 +109,14 @@ void declareSampling(CLI::App& command, BakeParams& params) {
                 "discontinuity threshold as a share of the distance");
   declareCount(command, "--raster-resolution", params.raster_resolution, 16, 16384,
                "raster: pixels along an edge of a hemicube's front");
-  declareCount(command, "--threshold", params.threshold, 0, 4294967295.0,
+  declareCount(command, "--threshold", params.threshold, 0, std::numeric_limits<uint32_t>::max(),
                "T: a quiet iteration finds fewer new triangles");
   declareCount(command, "--quiet-iterations", params.quiet_iterations, 1, 1000000,
                "stop after so many of them in a row");
   declareCount(command, "--batch-rays", params.batch_rays, 4096, 1u << 28,
                "rays of a border or reverse batch at most");
   command.add_option("--seed", params.seed, "seed of the random rays, 0 to 2^64 - 1")
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str()
       ->group(kParamsGroup);
@@ -131,7 +133,7 @@ void declareMachine(CLI::App& command, std::string& device, DeviceOptions& optio
             ->type_name("NAME")
             ->capture_default_str());
   group(command.add_option("--threads", options.threads, "of the tree and of cpu; 0: all cores")
-            ->check(between(0, 4096))
+            ->transform(wholeNumber(0, 4096))
             ->type_name("N")
             ->capture_default_str());
   const auto setKind = [&options](const std::string& name) { options.set = kSets.at(name); };
@@ -140,9 +142,8 @@ void declareMachine(CLI::App& command, std::string& device, DeviceOptions& optio
             ->type_name("KIND"));
   group(command
             .add_option("--memory-budget", options.memory_budget_bytes,
-                        "memory that the device may use, e.g. 4GB (0: what it reports)")
-            ->transform(CLI::AsSizeValue(false).description(""))
-            ->transform(byteSize())  // goes first
+                        "memory that the device may use, e.g. 4GB or 3.7GiB (0: what it reports)")
+            ->transform(byteSize())
             ->type_name("BYTES"));
   group(command.add_flag("--spatial-splits", spatial_splits,
                          "slower build, faster rays in scenes of long triangles"));

@@ -166,7 +166,7 @@ void declareComparison(CLI::App& command, CompareCommand& options) {
       ->check(oneOf(bakeMethods()))
       ->type_name("NAME,...");
   command.add_option("--rays", compare.params.max_rays, "budget of a cell: so many rays")
-      ->check(between(1, 1e18))
+      ->transform(wholeNumber(1, 1'000'000'000'000'000'000))
       ->type_name("N");
   command.add_option("--seconds", compare.params.max_seconds, "budget of a cell: so many seconds")
       ->check(between(1e-6, 1e9))
@@ -174,17 +174,17 @@ void declareComparison(CLI::App& command, CompareCommand& options) {
   command
       .add_option("--repeats", compare.repeats,
                   "bakes of each cell and method, with seeds that follow --seed")
-      ->check(between(1, 1000))
+      ->transform(wholeNumber(1, 1000))
       ->type_name("N")
       ->capture_default_str();
   command
       .add_option("--points", compare.points,
                   "measure the pixel error at the whole budget, half of it, a quarter ...")
-      ->check(between(1, 40))
+      ->transform(wholeNumber(1, 40))
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--missing-rays", compare.missing_rays, "rays that measure the share of missing rays")
-      ->check(between(1, double(1u << 30)))
+      ->transform(wholeNumber(1, 1u << 30))
       ->type_name("N")
       ->capture_default_str();
   declareViews(command, options.views);

@@ -133,17 +133,19 @@ std::vector<std::string> allKinds() {
 }
 
 void declareLimits(CLI::App& command, CrosscheckLimits& limits) {
-  const auto count = [&](const char* name, auto& limit, const char* help) {
-    command.add_option(name, limit, help)
-        ->check(between(0, 1e18))
-        ->type_name("N")
-        ->group("Limits of any one device (else exit code 3)");
+  const auto declare = [&](const char* name, auto& limit, const char* help) {
+    return command.add_option(name, limit, help)->group("Limits of any one device (else exit code 3)");
+  };
+  const auto count = [&](const char* name, std::optional<uint64_t>& limit, const char* help) {
+    declare(name, limit, help)->transform(wholeNumber())->type_name("N");
   };
   count("--max-wrong", limits.wrong, "answers that the judge finds wrong");
   count("--max-missed", limits.missed, "hits that the judge finds lost");
   count("--max-rounded", limits.rounded, "answers that are right up to rounding only");
   count("--max-differences", limits.differences, "other triangles than the first device's");
-  count("--max-ulps", limits.ulps, "error of a distance, in units in the last place");
+  declare("--max-ulps", limits.ulps, "error of a distance, in units in the last place")
+      ->check(between(0, 1e18))
+      ->type_name("X");
 }
 
 }  // namespace
@@ -161,7 +163,7 @@ void addCrosscheckCommand(CLI::App& app) {
       ->check(deviceName())
       ->type_name("A,B,...");
   command->add_option("--rays", options->options.rays, "rays of each kind, over all cells")
-      ->check(CLI::Range(uint64_t(1), uint64_t(1) << 40).description(""))
+      ->transform(wholeNumber(1, uint64_t(1) << 40))
       ->type_name("N")
       ->capture_default_str();
   command
@@ -173,13 +175,13 @@ void addCrosscheckCommand(CLI::App& app) {
       ->check(oneOf(allKinds()).description(""))
       ->type_name("KIND,...");
   command->add_option("--seed", options->options.seed, "seed of the rays")
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
   command
       ->add_option("--check-every", options->options.check_every,
                    "the judge looks at 1 in so many rays on which all agree (0: none)")
-      ->check(between(0, 1e18))
+      ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
   command
@@ -203,7 +205,7 @@ void addCrosscheckCommand(CLI::App& app) {
   command->add_flag("--pvs", options->pvs,
                     "also bake on each device (two or more), and explain how the sets differ");
   command->add_option("--n-rand", options->n_rand, "random rays an iteration of these bakes")
-      ->check(CLI::Range(1u, 4294967293u).description(""))
+      ->transform(wholeNumber(1, 4'294'967'293))
       ->type_name("N")
       ->capture_default_str();
   declareLimits(*command, options->limits);

@@ -251,7 +251,7 @@ void declareMeasure(CLI::App& command, MeasureCommand& options) {
       ->type_name("DEGREES")
       ->capture_default_str();
   command.add_option("--seed", options.options.seed, "seed of the views")
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
   command
@@ -260,7 +260,7 @@ void declareMeasure(CLI::App& command, MeasureCommand& options) {
       ->type_name("X")
       ->group("Limits of any one cell and file (else exit code 3)");
   command.add_option("--max-wrong", options.max_wrong, "wrong pixels in any one view")
-      ->check(between(0, 1e18))
+      ->transform(wholeNumber(0, 1'000'000'000'000'000'000))
       ->type_name("N")
       ->group("Limits of any one cell and file (else exit code 3)");
 }

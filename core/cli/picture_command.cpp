@@ -10,6 +10,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
+#include "core/cli/number_checks.h"
 #include "core/device/device.h"
 #include "core/error.h"
 #include "core/pvs/choose_cell.h"
@@ -98,13 +99,13 @@ void addPictureCommand(CLI::App& app) {
       ->check(oneOf({"outside", "inside"}))
       ->type_name("VIEW")
       ->capture_default_str();
-  const CLI::Range sides(kMinPictureSide, kMaxPictureSide);
+  const CLI::Validator sides = wholeNumber(kMinPictureSide, kMaxPictureSide);
   command->add_option("--width", options->options.width, "pixels")
-      ->check(sides)
+      ->transform(sides)
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--height", options->options.height, "pixels")
-      ->check(sides)
+      ->transform(sides)
       ->type_name("N")
       ->capture_default_str();
   command

@@ -67,10 +67,10 @@ void addSceneCommand(CLI::App& app) {
   command
       ->add_option("--triangles", arguments->triangles,
                    "How many, at most: 1000 to 20000000. Extent and detail grow with it")
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Another seed, another scene of the kind")
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->capture_default_str();
   command->add_option("--cells", arguments->cells,
                       "Also write ten view cells in the scene's free space to this .json file");

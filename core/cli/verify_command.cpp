@@ -88,7 +88,7 @@ void addVerifyCommand(CLI::App& app) {
   command
       ->add_option("--max-disproved", options->max_disproved,
                    "exit code 3 for more triangles disproved than this")
-      ->check(between(0, 1e18))
+      ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--min-proven", options->min_proven, "exit code 3 for a smaller share proven than this")

@@ -62,7 +62,7 @@ TEST(CrosscheckCommand, SaysWhatIsWrong) {
   expectRun("crosscheck " + city.input() + " --devices cpu --scale 1e-30", 2, {"smaller than"});
   expectRun("crosscheck " + city.input() + " --devices cpu --scale nan", 2, {"nan is not a number"});
   expectRun("crosscheck " + city.input() + " --devices cpu --rounding nan", 2, {"nan is not a number"});
-  expectRun("crosscheck " + city.input() + " --devices cpu --max-missed -1", 2, {"-1 is not a number"});
+  expectRun("crosscheck " + city.input() + " --devices cpu --max-missed -1", 2, {"-1 is not a whole number"});
   expectRun("crosscheck " + city.input(), 2, {"--devices"});
   expectRun("crosscheck " + city.input() + " --devices cpu,opencl,cpu", 2, {"--devices: cpu is named twice"});
   expectRun("crosscheck " + city.input() + " --devices opencl,opencl:0", 2, {"which is named already"});
