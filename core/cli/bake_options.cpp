@@ -154,8 +154,11 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
   command.add_option("--cells", options.cells, "view cells, JSON")->required()->type_name("CELLS.json");
   command.add_option("-o,--output", options.out, "the result; .part is added until it is whole")
       ->required()
+      ->check(notStandardOutput("a .pvs file"))
       ->type_name("OUT.pvs");
-  command.add_option("--report", options.report, "write what was done as JSON (docs/report.md)")
+  command
+      .add_option("--report", options.report,
+                  "write what was done as JSON (docs/report.md); - is standard output, here and below")
       ->type_name("R.json");
   command
       .add_option("--html", options.html,
@@ -164,6 +167,7 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
   command.add_option("--csv", options.csv, "write how the sets grew, a line a batch (docs/report.md)")
       ->type_name("R.csv");
   command.add_option("--pictures", options.pictures, "draw each cell from outside and from inside, as PNG")
+      ->check(notStandardOutput("a folder of pictures"))
       ->type_name("DIR");
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
   command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");

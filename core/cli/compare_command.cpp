@@ -10,6 +10,7 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
+#include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
 #include "core/compare/comparison_report.h"
 #include "core/device/naive_device.h"
@@ -99,7 +100,7 @@ bool compareCells(const Scene& scene, const std::vector<ViewCell>& cells, const 
   return true;
 }
 
-void saveReports(const CompareCommand& command, const ComparisonReport& report) {
+void saveReports(const CompareCommand& command, const ComparisonReport& report, const TextOutputs& outputs) {
   if (report.cells.empty()) return;
   std::fputs(("\n" + comparisonTable(report)).c_str(), stdout);
   for (const CellComparison& cell : report.cells) {
@@ -109,19 +110,17 @@ void saveReports(const CompareCommand& command, const ComparisonReport& report) 
                  cell.cell.name, methodName(run.method));
     }
   }
-  if (!command.report.empty()) saveText(comparisonJson(report), command.report);
-  if (!command.csv.empty()) saveText(comparisonCsv(report), command.csv);
-  if (!command.html.empty()) comparisonPage(report).save(command.html);
+  if (!command.report.empty()) outputs.save(comparisonJson(report), command.report);
+  if (!command.csv.empty()) outputs.save(comparisonCsv(report), command.csv);
+  if (!command.html.empty()) outputs.save(comparisonPage(report).html(), command.html);
 }
 
 void run(const CompareCommand& command) {
   checkOptions(command.options);
   for (const Method method : command.options.methods) requireMethodOn(method, command.device);
-  const std::array outputs = {command.report, command.html, command.csv};
-  requireSeparate(outputs, std::array{command.scene, command.cells});
-  for (const auto& output : outputs) {
-    if (!output.empty()) OutputFile probe(output);  // fail before the work, not after it
-  }
+  const std::array reports = {command.report, command.html, command.csv};
+  requireSeparate(reports, std::array{command.scene, command.cells});
+  const TextOutputs outputs(reports);
   const Scene scene = loadScene(command.scene, {.repair = command.repair});
   const std::vector<ViewCell> cells = loadCells(command.cells);
   requireDevice(command.device);
@@ -144,14 +143,16 @@ void run(const CompareCommand& command) {
              report.options.measure.resolution);
   StopSignal stop;
   report.complete = compareCells(scene, cells, devices, stop, report);
-  saveReports(command, report);
+  saveReports(command, report, outputs);
   if (!report.complete) throw ExitCode{stop.exitCode()};
 }
 
 void declareFiles(CLI::App& command, CompareCommand& options) {
   command.add_option("scene", options.scene, ".obj, .gltf, .glb or .ply")->required()->type_name("SCENE");
   command.add_option("--cells", options.cells, "view cells, JSON")->required()->type_name("CELLS.json");
-  command.add_option("--report", options.report, "write everything as JSON (docs/report.md)")
+  command
+      .add_option("--report", options.report,
+                  "write everything as JSON (docs/report.md); - is standard output, here and below")
       ->type_name("R.json");
   command.add_option("--csv", options.csv, "write the points of the budget as CSV")->type_name("R.csv");
   command.add_option("--html", options.html, "write a page with tables and charts")->type_name("R.html");

@@ -9,6 +9,7 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
+#include "core/cli/text_outputs.h"
 #include "core/crosscheck/crosscheck.h"
 #include "core/crosscheck/crosscheck_report.h"
 #include "core/crosscheck/place.h"
@@ -69,7 +70,7 @@ Json comparePvsOfAll(const CrosscheckCommand& command, const Scene& scene, const
 
 void run(const CrosscheckCommand& command) {
   requireSeparate(std::array{command.report}, std::array{command.scene, command.cells});
-  if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
+  const TextOutputs outputs({&command.report, 1});
   Scene scene = loadScene(command.scene, {.repair = command.repair});
   std::vector<ViewCell> cells = loadCells(command.cells);
   placeElsewhere(scene, cells, command.scale, command.move);
@@ -116,7 +117,7 @@ void run(const CrosscheckCommand& command) {
     json["pvs"] = comparePvsOfAll(command, scene, bvh, cells, pointers, stop);
   }
   json["complete"] = stop.exitCode() == 0;
-  if (!command.report.empty()) saveText(jsonText(json), command.report);
+  outputs.save(jsonText(json), command.report);
   if (stop.exitCode() != 0) {
     fmt::print("stopped: the table holds what was judged by then\n");
     throw ExitCode{stop.exitCode()};
@@ -198,7 +199,9 @@ void addCrosscheckCommand(CLI::App& app) {
       ->check(between(-1e30, 1e30))
       ->type_name("X")
       ->capture_default_str();
-  command->add_option("--report", options->report, "write everything as JSON (docs/report.md)")
+  command
+      ->add_option("--report", options->report,
+                   "write everything as JSON (docs/report.md); - is standard output")
       ->type_name("R.json");
   command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
   command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");

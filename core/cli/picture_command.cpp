@@ -93,7 +93,10 @@ void addPictureCommand(CLI::App& app) {
   command->add_option("--cell", options->cell, "view cell by name, or by index from 0")
       ->required()
       ->type_name("CELL");
-  command->add_option("-o,--output", options->output, "picture to write")->required()->type_name("FILE.png");
+  command->add_option("-o,--output", options->output, "picture to write")
+      ->required()
+      ->check(notStandardOutput("a picture"))
+      ->type_name("FILE.png");
   command
       ->add_option("--view", options->view, "outside: the scene around the cell; inside: what the cell sees")
       ->check(oneOf({"outside", "inside"}))

@@ -7,9 +7,11 @@
 #include "core/cli/commands.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
+#include "core/cli/text_outputs.h"
 #include "core/report/text.h"
 #include "core/scene/file_io.h"
 #include "core/scene/generate.h"
+#include "core/scene/obj_text.h"
 
 namespace sightline {
 namespace {
@@ -23,10 +25,16 @@ struct SceneArguments {
 };
 
 void run(const SceneArguments& arguments) {
-  requireSeparate(std::array<std::filesystem::path, 2>{arguments.output, arguments.cells}, {});
+  const std::array<std::filesystem::path, 2> files = {arguments.output, arguments.cells};
+  requireSeparate(files, {});
+  const TextOutputs outputs({files.data(), 1});
   const std::vector<ViewCell> cells = generateCells(arguments.name, arguments.triangles, arguments.seed);
   const Scene scene = generateScene(arguments.name, arguments.triangles, arguments.seed);
-  saveScene(scene, arguments.output);
+  if (isStandardOutput(arguments.output)) {
+    writeObj(scene, "standard output", [&](std::string_view piece) { outputs.write(piece); });
+  } else {
+    saveScene(scene, arguments.output);
+  }
   const Bounds bounds = sceneBounds(scene);
   const glm::vec3 size = bounds.high - bounds.low;
   fmt::print("{}: {} triangles, {} vertices, {}, {:.0f} x {:.0f} x {:.0f} m\n", arguments.output,
@@ -63,7 +71,10 @@ void addSceneCommand(CLI::App& app) {
   command->add_option("NAME", arguments->name, "city, canyon, plant or bistro")
       ->required()
       ->check(oneOf(sceneNames()));
-  command->add_option("-o,--output", arguments->output, "File to write: .obj or .glb")->required();
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "File to write: .obj or .glb; - writes OBJ to standard output")
+      ->required();
   command
       ->add_option("--triangles", arguments->triangles,
                    "How many, at most: 1000 to 20000000. Extent and detail grow with it")
@@ -72,8 +83,10 @@ void addSceneCommand(CLI::App& app) {
   command->add_option("--seed", arguments->seed, "Another seed, another scene of the kind")
       ->transform(wholeNumber())
       ->capture_default_str();
-  command->add_option("--cells", arguments->cells,
-                      "Also write ten view cells in the scene's free space to this .json file");
+  command
+      ->add_option("--cells", arguments->cells,
+                   "Also write ten view cells in the scene's free space to this .json file")
+      ->check(notStandardOutput("the cells of a scene"));
   command->footer(footer());
   command->callback([arguments] { run(*arguments); });
 }

@@ -5,7 +5,9 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
+#include "core/cli/text_outputs.h"
 #include "core/crosscheck/verify.h"
 #include "core/error.h"
 #include "core/pvs/pvs_writer.h"
@@ -23,7 +25,8 @@ struct VerifyCommand {
   bool repair = false;
 };
 
-void writeReport(const VerifyCommand& command, const PvsFile& pvs, const std::vector<CellProofs>& cells) {
+std::string reportText(const VerifyCommand& command, const PvsFile& pvs,
+                       const std::vector<CellProofs>& cells) {
   const Json json = {
       {"sightline", SL_VERSION},
       {"scene",
@@ -31,7 +34,7 @@ void writeReport(const VerifyCommand& command, const PvsFile& pvs, const std::ve
       {"device", pvs.device},
       {"rounding_steps", command.options.rounding.steps},
       {"cells", verifyJson(cells)}};
-  saveText(jsonText(json), command.report);
+  return jsonText(json);
 }
 
 /// Says whether the result is past the limits.
@@ -54,9 +57,8 @@ bool pastLimits(const VerifyCommand& command, const std::vector<CellProofs>& cel
 
 void run(const VerifyCommand& command) {
   requireSeparate(std::array{command.output, command.report}, std::array{command.scene, command.pvs});
-  for (const auto& output : {command.output, command.report}) {
-    if (!output.empty()) OutputFile probe(output);  // fail before the work, not after it
-  }
+  if (!command.output.empty()) OutputFile probe(command.output);  // fail before the work, not after it
+  const TextOutputs outputs({&command.report, 1});
   PvsFile pvs = loadFinishedCells(command.pvs);
   if (!pvs.has_witnesses) {
     throw Error(fmt::format("{}: has no witnesses; bake it with --witnesses", command.pvs.string()));
@@ -68,7 +70,7 @@ void run(const VerifyCommand& command) {
   std::vector<CellProofs> cells;
   for (CellPvs& cell : pvs.cells) cells.push_back(verifyCell(judge, scene, cell, command.options));
   std::fputs(verifyTable(cells).c_str(), stdout);
-  if (!command.report.empty()) writeReport(command, pvs, cells);
+  if (!command.report.empty()) outputs.save(reportText(command, pvs, cells), command.report);
   if (!command.output.empty()) savePvs(pvs, command.output);
   if (pastLimits(command, cells)) throw ExitCode{kExitPastLimit};
 }
@@ -82,8 +84,11 @@ void addVerifyCommand(CLI::App& app) {
   command->add_option("scene", options->scene, "the scene that was baked")->required()->type_name("SCENE");
   command->add_option("pvs", options->pvs, "made by bake --witnesses")->required()->type_name("OUT.pvs");
   command->add_option("-o,--output", options->output, "write the sets with better witnesses")
+      ->check(notStandardOutput("a .pvs file"))
       ->type_name("NEW.pvs");
-  command->add_option("--report", options->report, "write all that is not proven as JSON (docs/report.md)")
+  command
+      ->add_option("--report", options->report,
+                   "write all that is not proven as JSON (docs/report.md); - is standard output")
       ->type_name("R.json");
   command
       ->add_option("--max-disproved", options->max_disproved,
