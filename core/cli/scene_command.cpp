@@ -7,7 +7,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
-#include "core/cli/text_outputs.h"
+#include "core/cli/overwrite.h"
 #include "core/report/text.h"
 #include "core/scene/file_io.h"
 #include "core/scene/generate.h"
@@ -22,11 +22,13 @@ struct SceneArguments {
   std::string cells;
   uint64_t triangles = 2'000'000;
   uint64_t seed = 1;
+  bool overwrite = false;
 };
 
 void run(const SceneArguments& arguments) {
   const std::array<std::filesystem::path, 2> files = {arguments.output, arguments.cells};
   requireSeparate(files, {});
+  for (const std::filesystem::path& file : files) requireNew(file, arguments.overwrite);
   const TextOutputs outputs({files.data(), 1});
   const std::vector<ViewCell> cells = generateCells(arguments.name, arguments.triangles, arguments.seed);
   const Scene scene = generateScene(arguments.name, arguments.triangles, arguments.seed);
@@ -87,6 +89,7 @@ void addSceneCommand(CLI::App& app) {
       ->add_option("--cells", arguments->cells,
                    "Also write ten view cells in the scene's free space to this .json file")
       ->check(notStandardOutput("the cells of a scene"));
+  command->add_flag("--overwrite", arguments->overwrite, "Replace files that are there already");
   command->footer(footer());
   command->callback([arguments] { run(*arguments); });
 }

@@ -7,7 +7,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
-#include "core/cli/text_outputs.h"
+#include "core/cli/overwrite.h"
 #include "core/crosscheck/verify.h"
 #include "core/error.h"
 #include "core/pvs/pvs_writer.h"
@@ -22,7 +22,7 @@ struct VerifyCommand {
   VerifyOptions options;
   uint64_t max_disproved = 0;
   double min_proven = 0.9999;
-  bool repair = false;
+  bool repair = false, overwrite = false;
 };
 
 std::string reportText(const VerifyCommand& command, const PvsFile& pvs,
@@ -57,7 +57,10 @@ bool pastLimits(const VerifyCommand& command, const std::vector<CellProofs>& cel
 
 void run(const VerifyCommand& command) {
   requireSeparate(std::array{command.output, command.report}, std::array{command.scene, command.pvs});
-  if (!command.output.empty()) OutputFile probe(command.output);  // fail before the work, not after it
+  if (!command.output.empty()) {
+    requireNew(command.output, command.overwrite);
+    OutputFile probe(command.output);  // fail before the work, not after it
+  }
   const TextOutputs outputs({&command.report, 1});
   PvsFile pvs = loadFinishedCells(command.pvs);
   if (!pvs.has_witnesses) {
@@ -106,6 +109,7 @@ void addVerifyCommand(CLI::App& app) {
       ->check(between(0, 1e6))
       ->type_name("STEPS")
       ->capture_default_str();
+  command->add_flag("--overwrite", options->overwrite, "replace NEW.pvs");
   command->add_flag("--repair", options->repair, "load the scene as bake --repair did");
   command->callback([options] { run(*options); });
 }
