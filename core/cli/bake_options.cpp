@@ -149,6 +149,19 @@ void declareMachine(CLI::App& command, std::string& device, DeviceOptions& optio
                          "slower build, faster rays in scenes of long triangles"));
 }
 
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  sightline bake city.glb --cells cells.json -o city.pvs\n"
+    "  sightline bake city.glb --cells cells.json -o quick.pvs \\\n"
+    "      --n-rand 1M --validation-rays 1M --html quick.html\n"
+    "  sightline bake city.glb --cells cells.json -o sure.pvs --device cpu \\\n"
+    "      --n-rand 1M --target-error 1e-3 --report - | grep error_bound\n\n"
+    "A bake that was stopped goes on when the same command is given again. Whole\n"
+    "numbers may be written as 1e6 or 10M (k, M, G, T: powers of 1000), bytes as 4GB\n"
+    "or 3.7GiB (KiB, MiB, GiB: powers of 1024).\n\n"
+    "See also: scene and cells, which make what bake reads; info, picture, measure\n"
+    "and export, which read what it makes; devices, for --device.\n";
+
 void declareOptions(CLI::App& command, BakeOptions& options) {
   command.add_option("scene", options.scene, ".obj, .gltf, .glb or .ply")->required()->type_name("SCENE");
   command.add_option("--cells", options.cells, "view cells, JSON")->required()->type_name("CELLS.json");
@@ -176,6 +189,7 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
   declareMethod(command, options.params);
   declareSampling(command, options.params);
   declareLimits(command, options.params);
+  command.footer(kFooter);
 }
 
 }  // namespace sightline

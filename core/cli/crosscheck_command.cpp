@@ -149,6 +149,12 @@ void declareLimits(CLI::App& command, CrosscheckLimits& limits) {
       ->type_name("X");
 }
 
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  sightline crosscheck city.glb --cells cells.json --devices cpu,opencl\n"
+    "  sightline crosscheck city.glb --cells cells.json --devices cpu,opencl \\\n"
+    "      --kinds vertex,edge --rays 10k --max-wrong 0 --max-missed 0\n";
+
 }  // namespace
 
 void addCrosscheckCommand(CLI::App& app) {
@@ -212,6 +218,7 @@ void addCrosscheckCommand(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   declareLimits(*command, options->limits);
+  command->footer(kFooter);
   command->callback([options] {
     requireDistinct("--devices", options->devices);
     requireDistinct("--kinds", options->kinds);

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/cli/commands.h"
+#include "core/cli/help_format.h"
 #include "core/cli/usage.h"
 #include "core/error.h"
 
@@ -67,11 +68,16 @@ int main(int argc, char** argv) {
   CLI::App app("Potentially visible sets of scenes by guided visibility sampling (GVS++)", "sightline");
   app.set_version_flag("--version", "sightline " SL_VERSION);
   app.require_subcommand(1);
-  app.get_formatter()->column_width(34);
+  app.formatter(std::make_shared<HelpFormat>());
 #define SL_COMMAND(function) function(app);
 #include "generated/commands.inc"
 #undef SL_COMMAND
+  app.footer("sightline help COMMAND says all about one of them.");  // now: a command would take it over
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) command->group("Commands");
   refuseSlips(app);
+  if (argc < 2) {
+    std::fputs(app.help().c_str(), stderr);
+    return kExitUsage;
+  }
   return flushOutput(runCommand(app, argc, argv));
 }

@@ -269,6 +269,12 @@ void declareMeasure(CLI::App& command, MeasureCommand& options) {
       ->group("Limits of any one cell and file (else exit code 3)");
 }
 
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  sightline measure city.glb city.pvs\n"
+    "  sightline measure city.glb city.pvs --cell 0 --views 50 --pictures worst \\\n"
+    "      --csv - | sort -t , -k 3\n";
+
 }  // namespace
 
 void addMeasureCommand(CLI::App& app) {
@@ -277,6 +283,7 @@ void addMeasureCommand(CLI::App& app) {
   const auto options = std::make_shared<MeasureCommand>();
   declareFiles(*command, *options);
   declareMeasure(*command, *options);
+  command->footer(kFooter);
   command->callback([options] { run(*options); });
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/help_format.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
@@ -56,7 +57,7 @@ std::vector<std::string> sceneNames() {
 std::string footer() {
   std::string text = "Scenes:\n";
   for (const GeneratedSceneInfo& info : generatedScenes()) {
-    text += fmt::format("  {:<8} {}\n", info.name, info.about);
+    text += helpEntry(info.name, info.about);
   }
   return text +
          "Units are metres, y is up. The same name, count and seed give the same file.\n\n"
