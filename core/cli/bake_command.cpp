@@ -9,6 +9,7 @@
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/stop_signal.h"
+#include "core/cli/text_outputs.h"
 #include "core/device/cpu_tracer.h"
 #include "core/device/naive_device.h"
 #include "core/error.h"
@@ -194,18 +195,20 @@ int drawCells(const BakeOptions& options, const Scene& scene, Device& device, Ba
   return stop.exitCode();
 }
 
-void writePage(const BakeOptions& options, const BakeReport& report, BakePage& page) {
+void writePage(const BakeOptions& options, const BakeReport& report, const TextOutputs& outputs,
+               BakePage& page) {
   page.curves.resize(report.cells.size());
   page.command = commandLine();
-  if (!options.csv.empty()) saveText(curvesCsv(report, page.curves), options.csv);
-  if (!options.html.empty()) bakePage(report, page).save(options.html);
+  if (!options.csv.empty()) outputs.save(curvesCsv(report, page.curves), options.csv);
+  if (!options.html.empty()) outputs.save(bakePage(report, page).html(), options.html);
 }
 
-void writeReport(const BakeOptions& options, const Bake& bake, BakeReport& report) {
+void writeReport(const BakeOptions& options, const Bake& bake, const TextOutputs& outputs,
+                 BakeReport& report) {
   report.cells = bake.finished();
   report.baked_on = bake.head().device;
   report.peak_process_bytes = peakProcessBytes();
-  if (!options.report.empty()) saveText(reportJson(report), options.report);
+  if (!options.report.empty()) outputs.save(reportJson(report), options.report);
 }
 
 /// The finished cells, with what there is to say about their sets, too.
@@ -233,9 +236,7 @@ void runBake(const BakeOptions& options) {
                              options.pictures},
                   std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
-  for (const std::filesystem::path& file : reports) {
-    if (!file.empty()) OutputFile probe(file);  // fail before the work, not after it
-  }
+  const TextOutputs outputs(reports);
   const Scene scene = loadScene(options.scene, {.repair = options.repair});
   Bake bake(inputsOf(options, scene), options.out, options.overwrite);
   say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangles.size(),
@@ -257,7 +258,7 @@ void runBake(const BakeOptions& options) {
   printer.end();
 
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  writeReport(options, bake, report);
+  writeReport(options, bake, outputs, report);
   const std::vector<WarnedCell> warned = warnedCells(report);
   if (!report.cells.empty()) sayTable(report, warned);
   std::exception_ptr problem;  // with the pictures; the curves are not lost for it
@@ -268,7 +269,7 @@ void runBake(const BakeOptions& options) {
   } catch (...) {
     problem = std::current_exception();
   }
-  writePage(options, report, page);
+  writePage(options, report, outputs, page);
   if (problem) std::rethrow_exception(problem);
   if (exit_code != 0) throw ExitCode{exit_code};
   if (options.strict_cells) refuseWarnedCells(warned);

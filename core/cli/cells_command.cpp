@@ -13,7 +13,9 @@
 #include "core/cli/commands.h"
 #include "core/cli/free_side_option.h"
 #include "core/cli/number_checks.h"
+#include "core/cli/overwrite.h"
 #include "core/cli/stop_signal.h"
+#include "core/cli/text_outputs.h"
 #include "core/error.h"
 #include "core/gvs/bake_cell.h"
 #include "core/report/status_line.h"
@@ -27,8 +29,7 @@ namespace sightline {
 namespace {
 
 struct CellsArguments {
-  std::string scene;
-  std::string output;
+  std::filesystem::path scene, output;
   bool overwrite = false;
   std::string grid;
   std::string origin;
@@ -38,10 +39,6 @@ struct CellsArguments {
   std::vector<std::string> path;
   PathOptions path_options;
   std::optional<double> margin;
-
-  bool toStandardOutput() const { return output == "-"; }
-  /// Where to say what was done.
-  std::FILE* messages() const { return toStandardOutput() ? stderr : stdout; }
 };
 
 /// So many cells are named one by one that were left out.
@@ -118,11 +115,10 @@ GridOptions gridOptions(const CellsArguments& arguments) {
 }
 
 /// The grid's cells, with progress. Throws ExitCode if it was stopped.
-std::vector<ViewCell> runGrid(const Scene& scene, const GridOptions& options, GridCounts& counts,
-                              std::FILE* messages) {
+std::vector<ViewCell> runGrid(const Scene& scene, const GridOptions& options, GridCounts& counts) {
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   const StopSignal stop;
-  StatusLine status(messages);
+  StatusLine status;
   GridHooks hooks;
   hooks.stop = stop.flag();
   hooks.progress = [&](uint64_t done, uint64_t boxes) {
@@ -137,15 +133,14 @@ std::vector<ViewCell> runGrid(const Scene& scene, const GridOptions& options, Gr
     return cells;
   } catch (const Interrupted&) {
     status.end();
-    fmt::print(messages, "stopped: no cells are written\n");
+    fmt::print("stopped: no cells are written\n");
     throw ExitCode{stop.exitCode()};
   }
 }
 
 std::vector<ViewCell> placeGrid(const Scene& scene, const CellsArguments& arguments) {
-  std::FILE* const out = arguments.messages();
   GridCounts counts;
-  std::vector<ViewCell> cells = runGrid(scene, gridOptions(arguments), counts, out);
+  std::vector<ViewCell> cells = runGrid(scene, gridOptions(arguments), counts);
   const std::string line = fmt::format(
       "{} boxes: {} kept, {} met by triangles, {} with nothing below, {} too high, {} inside of solids",
       counts.boxes, counts.kept, counts.blocked, counts.nothing_below, counts.too_high, counts.in_solid);
@@ -153,26 +148,24 @@ std::vector<ViewCell> placeGrid(const Scene& scene, const CellsArguments& argume
     throw Error("no free box in the grid (" + line + "); try a smaller size, another --origin" +
                 (counts.in_solid > 0 ? ", or --free-side" : ""));
   }
-  fmt::print(out, "{}\n", line);
+  fmt::print("{}\n", line);
   if (counts.inset > 0) {
-    fmt::print(out, "{} of them are smaller, to keep clear of triangles (--margin)\n", counts.inset);
+    fmt::print("{} of them are smaller, to keep clear of triangles (--margin)\n", counts.inset);
   }
   if (counts.in_solid > counts.kept) {
-    fmt::print(out,
-               "note: if those are not solid, the scene's faces are turned: try --free-side back or any\n");
+    fmt::print("note: if those are not solid, the scene's faces are turned: try --free-side back or any\n");
   }
   return cells;
 }
 
 /// Says, a line a cell, what meets those that are left out.
-void sayBlocked(const std::vector<ClearCells::Blocked>& blocked, std::FILE* out) {
+void sayBlocked(const std::vector<ClearCells::Blocked>& blocked) {
   for (size_t i = 0; i < std::min(blocked.size(), kNamedCells); ++i) {
-    fmt::print(out, "warning: {} is left out: {} reach into it too far to keep clear of them\n",
+    fmt::print("warning: {} is left out: {} reach into it too far to keep clear of them\n",
                blocked[i].cell.name, counted(blocked[i].triangles, "triangle"));
   }
   if (blocked.size() > kNamedCells) {
-    fmt::print(out, "warning: {} more cells are left out for the same reason\n",
-               blocked.size() - kNamedCells);
+    fmt::print("warning: {} more cells are left out for the same reason\n", blocked.size() - kNamedCells);
   }
 }
 
@@ -185,47 +178,34 @@ std::vector<ViewCell> placePath(const Scene& scene, const CellsArguments& argume
   if (margin == 0) return cells;
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   ClearCells clear = keepClear(scene, bvh, cells, margin);
-  std::FILE* const out = arguments.messages();
   if (clear.cells.empty()) {
     throw Error(
         fmt::format("no box of the path is free: {} reach into {}; move the path, make it narrower or "
                     "lower, or take --margin 0",
                     counted(clear.blocked[0].triangles, "triangle"), clear.blocked[0].cell.name));
   }
-  sayBlocked(clear.blocked, out);
+  sayBlocked(clear.blocked);
   if (clear.inset > 0) {
-    fmt::print(out, "{} of {} boxes are smaller, to keep clear of triangles (--margin)\n", clear.inset,
+    fmt::print("{} of {} boxes are smaller, to keep clear of triangles (--margin)\n", clear.inset,
                cells.size());
   }
   return std::move(clear.cells);
-}
-
-/// Writing is refused before the work, not after it.
-void checkOutput(const CellsArguments& arguments) {
-  if (arguments.toStandardOutput()) return;
-  std::vector<std::filesystem::path> inputs(arguments.path.begin(), arguments.path.end());
-  inputs.push_back(arguments.scene);
-  requireSeparate(std::array<std::filesystem::path, 1>{arguments.output}, inputs);
-  std::error_code ignored;
-  if (!arguments.overwrite && std::filesystem::is_regular_file(arguments.output, ignored)) {
-    throw Error(arguments.output + ": is there already; name another file, or --overwrite it");
-  }
 }
 
 void run(const CellsArguments& arguments) {
   if (arguments.grid.empty() == arguments.path.empty()) {
     throw Error("cells: takes either --grid or --path (see: sightline cells --help)", kExitUsage);
   }
-  checkOutput(arguments);
+  std::vector<std::filesystem::path> inputs(arguments.path.begin(), arguments.path.end());
+  inputs.push_back(arguments.scene);
+  requireSeparate(std::array{arguments.output}, inputs);
+  requireNew(arguments.output, arguments.overwrite);
+  const TextOutputs outputs({&arguments.output, 1});
   const Scene scene = loadScene(arguments.scene);
   const std::vector<ViewCell> cells =
       arguments.grid.empty() ? placePath(scene, arguments) : placeGrid(scene, arguments);
-  if (arguments.toStandardOutput()) {
-    std::fputs(cellsText(cells, "standard output").c_str(), stdout);
-    return;
-  }
-  saveCells(cells, arguments.output);
-  fmt::print("{}: {} view cells\n", arguments.output, cells.size());
+  outputs.save(cellsText(cells, arguments.output), arguments.output);
+  fmt::print("{}: {} view cells\n", arguments.output.string(), cells.size());
 }
 
 constexpr const char* kFooter =
@@ -263,7 +243,7 @@ void declareGrid(CLI::App& command, CellsArguments& a) {
       ->needs(grid);
   command.add_option("--count", a.count, "At most so many boxes along x, y and z, from the origin on")
       ->expected(3)
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->type_name("NX NY NZ")
       ->needs(grid);
   command

@@ -10,6 +10,7 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
+#include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
 #include "core/compare/comparison_report.h"
 #include "core/device/naive_device.h"
@@ -99,7 +100,7 @@ bool compareCells(const Scene& scene, const std::vector<ViewCell>& cells, const 
   return true;
 }
 
-void saveReports(const CompareCommand& command, const ComparisonReport& report) {
+void saveReports(const CompareCommand& command, const ComparisonReport& report, const TextOutputs& outputs) {
   if (report.cells.empty()) return;
   std::fputs(("\n" + comparisonTable(report)).c_str(), stdout);
   for (const CellComparison& cell : report.cells) {
@@ -109,19 +110,17 @@ void saveReports(const CompareCommand& command, const ComparisonReport& report) 
                  cell.cell.name, methodName(run.method));
     }
   }
-  if (!command.report.empty()) saveText(comparisonJson(report), command.report);
-  if (!command.csv.empty()) saveText(comparisonCsv(report), command.csv);
-  if (!command.html.empty()) comparisonPage(report).save(command.html);
+  if (!command.report.empty()) outputs.save(comparisonJson(report), command.report);
+  if (!command.csv.empty()) outputs.save(comparisonCsv(report), command.csv);
+  if (!command.html.empty()) outputs.save(comparisonPage(report).html(), command.html);
 }
 
 void run(const CompareCommand& command) {
   checkOptions(command.options);
   for (const Method method : command.options.methods) requireMethodOn(method, command.device);
-  const std::array outputs = {command.report, command.html, command.csv};
-  requireSeparate(outputs, std::array{command.scene, command.cells});
-  for (const auto& output : outputs) {
-    if (!output.empty()) OutputFile probe(output);  // fail before the work, not after it
-  }
+  const std::array reports = {command.report, command.html, command.csv};
+  requireSeparate(reports, std::array{command.scene, command.cells});
+  const TextOutputs outputs(reports);
   const Scene scene = loadScene(command.scene, {.repair = command.repair});
   const std::vector<ViewCell> cells = loadCells(command.cells);
   requireDevice(command.device);
@@ -144,14 +143,16 @@ void run(const CompareCommand& command) {
              report.options.measure.resolution);
   StopSignal stop;
   report.complete = compareCells(scene, cells, devices, stop, report);
-  saveReports(command, report);
+  saveReports(command, report, outputs);
   if (!report.complete) throw ExitCode{stop.exitCode()};
 }
 
 void declareFiles(CLI::App& command, CompareCommand& options) {
   command.add_option("scene", options.scene, ".obj, .gltf, .glb or .ply")->required()->type_name("SCENE");
   command.add_option("--cells", options.cells, "view cells, JSON")->required()->type_name("CELLS.json");
-  command.add_option("--report", options.report, "write everything as JSON (docs/report.md)")
+  command
+      .add_option("--report", options.report,
+                  "write everything as JSON (docs/report.md); - is standard output, here and below")
       ->type_name("R.json");
   command.add_option("--csv", options.csv, "write the points of the budget as CSV")->type_name("R.csv");
   command.add_option("--html", options.html, "write a page with tables and charts")->type_name("R.html");
@@ -162,10 +163,11 @@ void declareComparison(CLI::App& command, CompareCommand& options) {
   CompareOptions& compare = options.options;
   command.add_option("--methods", options.methods, "methods to compare (default: gvs++,gvs,random)")
       ->delimiter(',')
-      ->check(CLI::IsMember(bakeMethods()))
+      ->allow_extra_args(false)
+      ->check(oneOf(bakeMethods()))
       ->type_name("NAME,...");
   command.add_option("--rays", compare.params.max_rays, "budget of a cell: so many rays")
-      ->check(between(1, 1e18))
+      ->transform(wholeNumber(1, 1'000'000'000'000'000'000))
       ->type_name("N");
   command.add_option("--seconds", compare.params.max_seconds, "budget of a cell: so many seconds")
       ->check(between(1e-6, 1e9))
@@ -173,21 +175,26 @@ void declareComparison(CLI::App& command, CompareCommand& options) {
   command
       .add_option("--repeats", compare.repeats,
                   "bakes of each cell and method, with seeds that follow --seed")
-      ->check(between(1, 1000))
+      ->transform(wholeNumber(1, 1000))
       ->type_name("N")
       ->capture_default_str();
   command
       .add_option("--points", compare.points,
                   "measure the pixel error at the whole budget, half of it, a quarter ...")
-      ->check(between(1, 40))
+      ->transform(wholeNumber(1, 40))
       ->type_name("N")
       ->capture_default_str();
   command.add_option("--missing-rays", compare.missing_rays, "rays that measure the share of missing rays")
-      ->check(between(1, double(1u << 30)))
+      ->transform(wholeNumber(1, 1u << 30))
       ->type_name("N")
       ->capture_default_str();
   declareViews(command, options.views);
 }
+
+constexpr const char* kFooter =
+    "Example:\n"
+    "  sightline compare city.glb --cells cells.json --methods gvs++,random \\\n"
+    "      --rays 2M --n-rand 500k --views 20 --html methods.html\n";
 
 }  // namespace
 
@@ -200,6 +207,7 @@ void addCompareCommand(CLI::App& app) {
   declareComparison(*command, *options);
   declareMachine(*command, options->device, options->device_options, options->spatial_splits);
   declareSampling(*command, options->options.params);
+  command->footer(kFooter);
   command->callback([command, options] {
     CompareOptions& compare = options->options;
     if (command->count("--rays") + command->count("--seconds") == 0) {

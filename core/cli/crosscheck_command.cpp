@@ -6,9 +6,11 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
+#include "core/cli/text_outputs.h"
 #include "core/crosscheck/crosscheck.h"
 #include "core/crosscheck/crosscheck_report.h"
 #include "core/crosscheck/place.h"
@@ -120,7 +122,7 @@ void run(const CrosscheckCommand& command) {
   if (!command.reproduce.empty()) {
     prepareReproducerFolder(command.reproduce, command.overwrite, std::array{command.scene, command.cells});
   }
-  if (!command.report.empty()) OutputFile probe(command.report);  // fail before the work, not after it
+  const TextOutputs outputs({&command.report, 1});
   Scene scene = loadScene(command.scene, {.repair = command.repair});
   std::vector<ViewCell> cells = loadCells(command.cells);
   placeElsewhere(scene, cells, command.scale, command.move);
@@ -167,7 +169,7 @@ void run(const CrosscheckCommand& command) {
     json["pvs"] = comparePvsOfAll(command, {scene, bvh, cells}, pointers, stop, report);
   }
   json["complete"] = stop.exitCode() == 0;
-  if (!command.report.empty()) saveText(jsonText(json), command.report);
+  outputs.save(jsonText(json), command.report);
   if (!command.reproduce.empty()) writeReproducers(command, {scene, bvh, cells}, report);
   if (stop.exitCode() != 0) {
     fmt::print("stopped: the table holds what was judged by then\n");
@@ -178,20 +180,34 @@ void run(const CrosscheckCommand& command) {
   if (!past.empty()) throw ExitCode{kExitPastLimit};
 }
 
+std::vector<std::string> allKinds() {
+  std::vector<std::string> names;
+  for (uint32_t i = 0; i < kRayKinds; ++i) names.push_back(rayKindName(RayKind(i)));
+  return names;
+}
+
 void declareLimits(CLI::App& command, CrosscheckLimits& limits) {
-  const auto count = [&](const char* name, auto& limit, const char* help) {
-    command.add_option(name, limit, help)
-        ->check(between(0, 1e18))
-        ->type_name("N")
-        ->group("Limits of any one device (else exit code 3)");
+  const auto declare = [&](const char* name, auto& limit, const char* help) {
+    return command.add_option(name, limit, help)->group("Limits of any one device (else exit code 3)");
+  };
+  const auto count = [&](const char* name, std::optional<uint64_t>& limit, const char* help) {
+    declare(name, limit, help)->transform(wholeNumber())->type_name("N");
   };
   count("--max-wrong", limits.wrong,
         "answers that the judge finds wrong, and with --pvs triangles not of their cell");
   count("--max-missed", limits.missed, "hits that the judge finds lost");
   count("--max-rounded", limits.rounded, "answers that are right up to rounding only");
   count("--max-differences", limits.differences, "other triangles than the first device's");
-  count("--max-ulps", limits.ulps, "error of a distance, in units in the last place");
+  declare("--max-ulps", limits.ulps, "error of a distance, in units in the last place")
+      ->check(between(0, 1e18))
+      ->type_name("X");
 }
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  sightline crosscheck city.glb --cells cells.json --devices cpu,opencl\n"
+    "  sightline crosscheck city.glb --cells cells.json --devices cpu,opencl \\\n"
+    "      --kinds vertex,edge --rays 10k --max-wrong 0 --max-missed 0\n";
 
 }  // namespace
 
@@ -204,9 +220,11 @@ void addCrosscheckCommand(CLI::App& app) {
   command->add_option("--devices", options->devices, "devices to compare, the first is compared with")
       ->required()
       ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(deviceName())
       ->type_name("A,B,...");
   command->add_option("--rays", options->options.rays, "rays of each kind, over all cells")
-      ->check(CLI::Range(uint64_t(1), uint64_t(1) << 40).description(""))
+      ->transform(wholeNumber(1, uint64_t(1) << 40))
       ->type_name("N")
       ->capture_default_str();
   command
@@ -214,15 +232,17 @@ void addCrosscheckCommand(CLI::App& app) {
                    "random, border, reverse, vertex, edge, along-edge, axis, grazing, plane, far-tiny "
                    "(default: all)")
       ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(oneOf(allKinds()).description(""))
       ->type_name("KIND,...");
   command->add_option("--seed", options->options.seed, "seed of the rays")
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
   command
       ->add_option("--check-every", options->options.check_every,
                    "the judge looks at 1 in so many rays on which all agree (0: none)")
-      ->check(between(0, 1e18))
+      ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
   command
@@ -239,7 +259,9 @@ void addCrosscheckCommand(CLI::App& app) {
       ->check(between(-1e30, 1e30))
       ->type_name("X")
       ->capture_default_str();
-  command->add_option("--report", options->report, "write everything as JSON (docs/report.md)")
+  command
+      ->add_option("--report", options->report,
+                   "write everything as JSON (docs/report.md); - is standard output")
       ->type_name("R.json");
   command
       ->add_option("--reproduce", options->reproduce,
@@ -251,10 +273,11 @@ void addCrosscheckCommand(CLI::App& app) {
   command->add_flag("--pvs", options->pvs,
                     "also bake on each device (two or more), and explain how the sets differ");
   command->add_option("--n-rand", options->n_rand, "random rays an iteration of these bakes")
-      ->check(CLI::Range(1u, 4294967293u).description(""))
+      ->transform(wholeNumber(1, 4'294'967'293))
       ->type_name("N")
       ->capture_default_str();
   declareLimits(*command, options->limits);
+  command->footer(kFooter);
   command->callback([options] {
     requireDistinct("--devices", options->devices);
     requireDistinct("--kinds", options->kinds);
@@ -268,9 +291,7 @@ void addCrosscheckCommand(CLI::App& app) {
     }
     if (!options->reproduce.empty()) options->options.keep_disagreements = kReproducers;
     for (const std::string& name : options->kinds) {
-      const auto kind = rayKindOf(name);
-      if (!kind) throw CLI::ValidationError("--kinds", "no kind of ray \"" + name + "\"; see --help");
-      options->options.kinds.push_back(*kind);
+      options->options.kinds.push_back(*rayKindOf(name));
     }
     run(*options);
   });

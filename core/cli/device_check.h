@@ -1,7 +1,9 @@
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
+#include "core/cli/nearest.h"
 #include "core/device/device.h"
 
 namespace sightline {
@@ -14,7 +16,9 @@ inline CLI::Validator deviceName() {
           return std::string("embree traces rays for crosscheck and trace only; take cpu, opencl or vulkan");
         }
         if (isDeviceName(name)) return std::string();
-        return "no device \"" + name + "\"; sightline devices lists what can run here";
+        const std::vector<std::string> kinds = {"cpu", "opencl", "vulkan"};
+        return "no device \"" + name + "\"; sightline devices lists what can run here" +
+               didYouMean(name, kinds);
       },
       "");
 }

@@ -5,11 +5,14 @@
 #include <optional>
 
 #include "core/cli/commands.h"
+#include "core/cli/name_checks.h"
+#include "core/cli/text_outputs.h"
 #include "core/error.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/report/export.h"
 #include "core/scene/file_io.h"
+#include "core/scene/obj_text.h"
 
 namespace sightline {
 namespace {
@@ -29,13 +32,18 @@ void requireExtension(const ExportOptions& options) {
 
 void runExport(const ExportOptions& options) {
   const bool geometry = options.format == "obj" || options.format == "glb";
-  if (geometry) requireExtension(options);
+  const bool to_output = isStandardOutput(options.out);
+  if (to_output && options.format == "glb") {
+    throw Error("--output: - is standard output, where a .glb file cannot go; give it a name", kExitUsage);
+  }
+  if (geometry && !to_output) requireExtension(options);
   if (geometry && options.scene.empty()) {
     throw Error(
         fmt::format("--format {} needs --scene: a .pvs file holds ids, not triangles", options.format),
         kExitUsage);
   }
   requireSeparate(std::array{options.out}, std::array{options.pvs, options.scene});
+  const TextOutputs outputs({&options.out, 1});
   const PvsFile pvs = loadFinishedCells(options.pvs);
   const CellPvs& cell = chooseCell(pvs, options.cell, options.pvs);
   std::optional<Scene> scene;
@@ -43,9 +51,14 @@ void runExport(const ExportOptions& options) {
     scene = loadScene(options.scene);
     requireScene(pvs, *scene, options.pvs);
   }
-  if (options.format == "ids") saveText(idsText(cell), options.out);
-  if (options.format == "json") saveText(cellJson(pvs, cell, scene ? &*scene : nullptr), options.out);
-  if (geometry) saveScene(visibleScene(*scene, cell), options.out);
+  if (options.format == "ids") outputs.save(idsText(cell), options.out);
+  if (options.format == "json") outputs.save(cellJson(pvs, cell, scene ? &*scene : nullptr), options.out);
+  if (geometry && to_output) {
+    writeObj(visibleScene(*scene, cell), "standard output",
+             [&](std::string_view piece) { outputs.write(piece); });
+  } else if (geometry) {
+    saveScene(visibleScene(*scene, cell), options.out);
+  }
   std::fputs(fmt::format("{}: {} triangles of cell {}\n", options.out.string(), cell.triangles.size(),
                          cell.cell.name)
                  .c_str(),
@@ -65,9 +78,11 @@ void addExportCommand(CLI::App& app) {
       ->type_name("NAME|INDEX");
   command->add_option("--format", options->format, "ids, obj, glb or json")
       ->required()
-      ->check(CLI::IsMember({"ids", "obj", "glb", "json"}))
+      ->check(oneOf({"ids", "obj", "glb", "json"}))
       ->type_name("FORMAT");
-  command->add_option("-o,--output", options->out)->required()->type_name("FILE");
+  command->add_option("-o,--output", options->out, "- is standard output, but for glb")
+      ->required()
+      ->type_name("FILE");
   command->add_option("--scene", options->scene, "the baked scene: for obj and glb, and for json's objects")
       ->type_name("SCENE");
   command->callback([options] { runExport(*options); });

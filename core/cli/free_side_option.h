@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "core/cli/name_checks.h"
 #include "core/scene/in_solid.h"
 
 namespace sightline {
@@ -17,7 +18,7 @@ inline CLI::Option* declareFreeSide(CLI::App& command, FreeSide& free_side, cons
                                          : FreeSide::kAny;
           },
           help)
-      ->check(CLI::IsMember({"front", "back", "any"}))
+      ->check(oneOf({"front", "back", "any"}))
       ->type_name("NAME")
       ->default_str("front");
 }

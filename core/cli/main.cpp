@@ -1,52 +1,41 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 
 #include "core/cli/commands.h"
+#include "core/cli/help_format.h"
+#include "core/cli/usage.h"
 #include "core/error.h"
 
 namespace sightline {
 namespace {
 
-int fail(const std::string& line, int exit_code) {
+/// One line, whatever the user's words hold: a control character shows as "?".
+int fail(std::string line, int exit_code) {
   std::fflush(stdout);
+  for (char& c : line) {
+    if (std::iscntrl(uint8_t(c)) != 0) c = '?';
+  }
   std::fprintf(stderr, "sightline: %s\n", line.c_str());
   return exit_code;
 }
 
-/// The first line of CLI11's message, with the command to ask for help.
-int failUsage(const CLI::App& app, const CLI::ParseError& error) {
-  std::string line = error.what();
-  line = line.substr(0, line.find('\n'));
-  const auto chosen = app.get_subcommands();
-  const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
-  return fail(line + " (see: sightline" + command + " --help)", kExitUsage);
-}
-
-/// '' mostly comes from a variable of the shell that is not set, and would count as not given.
-void refuseEmptyValues(CLI::App& app) {
-  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
-    for (CLI::Option* option : command->get_options()) {
-      const char* line = option->get_required() ? "is empty; give a value"
-                                                : "is empty; give a value, or leave the option out";
-      option->check(
-          CLI::Validator([line](std::string& text) { return text.empty() ? line : std::string(); }, ""));
-    }
-  }
-}
-
 int runCommand(CLI::App& app, int argc, char** argv) {
   try {
+    refuseSingleDashes(app, argc, argv);
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return failUsage(app, error);
+    return fail(usageLine(app, error), kExitUsage);
   } catch (const ExitCode& exit_code) {
     return exit_code.code;
   } catch (const Error& error) {
@@ -76,14 +65,19 @@ int main(int argc, char** argv) {
   using namespace sightline;
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not end a bake
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of the write
-  CLI::App app("Potentially visible sets of triangle scenes by guided visibility sampling (GVS++)",
-               "sightline");
+  CLI::App app("Potentially visible sets of scenes by guided visibility sampling (GVS++)", "sightline");
   app.set_version_flag("--version", "sightline " SL_VERSION);
   app.require_subcommand(1);
-  app.get_formatter()->column_width(34);
+  app.formatter(std::make_shared<HelpFormat>());
 #define SL_COMMAND(function) function(app);
 #include "generated/commands.inc"
 #undef SL_COMMAND
-  refuseEmptyValues(app);
+  app.footer("sightline help COMMAND says all about one of them.");  // now: a command would take it over
+  for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) command->group("Commands");
+  refuseSlips(app);
+  if (argc < 2) {
+    std::fputs(app.help().c_str(), stderr);
+    return kExitUsage;
+  }
   return flushOutput(runCommand(app, argc, argv));
 }

@@ -11,8 +11,10 @@
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
+#include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
+#include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
 #include "core/error.h"
 #include "core/gvs/bake_cell.h"
@@ -177,10 +179,9 @@ void run(const MeasureCommand& command) {
   checkOptions(command.options);
   std::vector<std::filesystem::path> inputs = command.pvs;
   inputs.push_back(command.scene);
-  requireSeparate(std::array{command.report, command.csv, command.html}, inputs);
-  for (const auto& output : {command.report, command.csv, command.html}) {
-    if (!output.empty()) OutputFile probe(output);  // fail before the work, not after it
-  }
+  const std::array reports = {command.report, command.csv, command.html};
+  requireSeparate(reports, inputs);
+  const TextOutputs outputs(reports);
   if (!command.pictures.empty()) makeFolder(command.pictures);
   const Scene scene = loadScene(command.scene, {.repair = command.repair});
   const std::vector<PvsFile> files = loadSets(command, scene);
@@ -207,10 +208,10 @@ void run(const MeasureCommand& command) {
     fmt::print("stopped: {} of {} cells are measured\n", report.sets.front().cells.size(), cells.size());
   }
   fmt::print("{} rays in {}\n", shortCount(report.rays), shortDuration(report.seconds));
-  if (!command.report.empty()) saveText(jsonText(measureJson(report)), command.report);
-  if (!command.csv.empty()) saveText(measureCsv(report), command.csv);
+  if (!command.report.empty()) outputs.save(jsonText(measureJson(report)), command.report);
+  if (!command.csv.empty()) outputs.save(measureCsv(report), command.csv);
   if (!command.html.empty())
-    measurePage(report, readPictures(command, report), commandLine()).save(command.html);
+    outputs.save(measurePage(report, readPictures(command, report), commandLine()).html(), command.html);
   if (stop.exitCode() != 0) throw ExitCode{stop.exitCode()};
   const auto past = pastLimits(report, command.max_average, command.max_wrong);
   for (const std::string& line : past) fmt::print("past the limit: {}\n", line);
@@ -233,8 +234,11 @@ void declareFiles(CLI::App& command, MeasureCommand& options) {
       .add_option("--pictures", options.pictures,
                   "draw the worst views, at most three a cell and file: scene grey, wrong pixels red; an "
                   "earlier run's pictures of these cells are removed")
+      ->check(notStandardOutput("a folder of pictures"))
       ->type_name("DIR");
-  command.add_option("--report", options.report, "write what was found as JSON (docs/report.md)")
+  command
+      .add_option("--report", options.report,
+                  "write what was found as JSON (docs/report.md); - is standard output, here and below")
       ->type_name("R.json");
   command.add_option("--csv", options.csv, "write it as CSV, a line a cell and file")->type_name("R.csv");
   command
@@ -251,7 +255,7 @@ void declareMeasure(CLI::App& command, MeasureCommand& options) {
       ->type_name("DEGREES")
       ->capture_default_str();
   command.add_option("--seed", options.options.seed, "seed of the views")
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
   command
@@ -260,10 +264,16 @@ void declareMeasure(CLI::App& command, MeasureCommand& options) {
       ->type_name("X")
       ->group("Limits of any one cell and file (else exit code 3)");
   command.add_option("--max-wrong", options.max_wrong, "wrong pixels in any one view")
-      ->check(between(0, 1e18))
+      ->transform(wholeNumber(0, 1'000'000'000'000'000'000))
       ->type_name("N")
       ->group("Limits of any one cell and file (else exit code 3)");
 }
+
+constexpr const char* kFooter =
+    "Examples:\n"
+    "  sightline measure city.glb city.pvs\n"
+    "  sightline measure city.glb city.pvs --cell 0 --views 50 --pictures worst \\\n"
+    "      --csv - | sort -t , -k 3\n";
 
 }  // namespace
 
@@ -273,6 +283,7 @@ void addMeasureCommand(CLI::App& app) {
   const auto options = std::make_shared<MeasureCommand>();
   declareFiles(*command, *options);
   declareMeasure(*command, *options);
+  command->footer(kFooter);
   command->callback([options] { run(*options); });
 }
 

@@ -3,9 +3,11 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <charconv>
 #include <cstdint>
+#include <limits>
 #include <string>
+
+#include "core/cli/whole_number.h"
 
 namespace sightline {
 
@@ -20,28 +22,39 @@ inline CLI::Validator between(double low, double high) {
       "");
 }
 
-/// Digits, and a unit after them if there is one: CLI11 lets -5 wrap around, and takes a unit for 0.
-inline CLI::Validator byteSize() {
+/// 1e18 rather than 1000000000000000000; other numbers in full.
+inline std::string limitText(uint64_t limit) {
+  constexpr uint64_t kLongest = 1'000'000'000'000;
+  uint64_t rest = limit;
+  int zeros = 0;
+  for (; rest >= 10 && rest % 10 == 0; rest /= 10) ++zeros;
+  return limit < kLongest || rest > 9 ? std::to_string(limit) : fmt::format("{}e{}", rest, zeros);
+}
+
+/// A count (parseCount), which it turns into plain digits: give it to transform(), not to check().
+inline CLI::Validator wholeNumber(uint64_t low = 0, uint64_t high = std::numeric_limits<uint64_t>::max()) {
   return CLI::Validator(
-      [](std::string& text) {
-        const size_t unit = text.find_first_not_of("0123456789");
-        const bool letters = unit == std::string::npos ||
-                             text.find_first_not_of(" abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ",
-                                                    unit) == std::string::npos;
-        if (unit != 0 && letters) return std::string();
-        return fmt::format("{} is not a whole number of bytes, such as 4000000000 or 4GB", text);
+      [low, high](std::string& text) {
+        const auto value = parseCount(text);
+        if (!value || *value < low || *value > high) {
+          return fmt::format("{} is not a whole number from {} to {}", text, limitText(low), limitText(high));
+        }
+        text = std::to_string(*value);
+        return std::string();
       },
       "");
 }
 
-/// Digits of a number that fits 64 bits: CLI11 lets -1 wrap around, and takes more than fits for 0.
-inline CLI::Validator wholeNumber() {
+/// Bytes (parseBytes), which it turns into plain digits: give it to transform(), not to check().
+inline CLI::Validator byteSize() {
   return CLI::Validator(
       [](std::string& text) {
-        uint64_t value = 0;
-        const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (failure == std::errc() && end == text.data() + text.size()) return std::string();
-        return fmt::format("{} is not a whole number from 0 to 18446744073709551615", text);
+        const auto value = parseBytes(text);
+        if (!value) {
+          return fmt::format("{} is not a whole number of bytes, such as 4000000000, 4GB or 3.7GiB", text);
+        }
+        text = std::to_string(*value);
+        return std::string();
       },
       "");
 }

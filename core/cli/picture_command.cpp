@@ -8,6 +8,9 @@
 
 #include "bvh/bvh.h"
 #include "core/cli/commands.h"
+#include "core/cli/device_check.h"
+#include "core/cli/name_checks.h"
+#include "core/cli/number_checks.h"
 #include "core/device/device.h"
 #include "core/error.h"
 #include "core/pvs/choose_cell.h"
@@ -90,19 +93,22 @@ void addPictureCommand(CLI::App& app) {
   command->add_option("--cell", options->cell, "view cell by name, or by index from 0")
       ->required()
       ->type_name("CELL");
-  command->add_option("-o,--output", options->output, "picture to write")->required()->type_name("FILE.png");
+  command->add_option("-o,--output", options->output, "picture to write")
+      ->required()
+      ->check(notStandardOutput("a picture"))
+      ->type_name("FILE.png");
   command
       ->add_option("--view", options->view, "outside: the scene around the cell; inside: what the cell sees")
-      ->check(CLI::IsMember({"outside", "inside"}))
+      ->check(oneOf({"outside", "inside"}))
       ->type_name("VIEW")
       ->capture_default_str();
-  const CLI::Range sides(kMinPictureSide, kMaxPictureSide);
+  const CLI::Validator sides = wholeNumber(kMinPictureSide, kMaxPictureSide);
   command->add_option("--width", options->options.width, "pixels")
-      ->check(sides)
+      ->transform(sides)
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--height", options->options.height, "pixels")
-      ->check(sides)
+      ->transform(sides)
       ->type_name("N")
       ->capture_default_str();
   command
@@ -113,6 +119,7 @@ void addPictureCommand(CLI::App& app) {
   command
       ->add_option("--device", options->device,
                    "cpu, opencl or vulkan; the latter two also with :INDEX or :PART-OF-NAME")
+      ->check(deviceName())
       ->type_name("NAME")
       ->capture_default_str();
   command->add_flag("--repair", options->repair, "load the scene as bake --repair did");

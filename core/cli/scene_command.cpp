@@ -5,10 +5,14 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/help_format.h"
+#include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
+#include "core/cli/overwrite.h"
 #include "core/report/text.h"
 #include "core/scene/file_io.h"
 #include "core/scene/generate.h"
+#include "core/scene/obj_text.h"
 
 namespace sightline {
 namespace {
@@ -19,13 +23,21 @@ struct SceneArguments {
   std::string cells;
   uint64_t triangles = 2'000'000;
   uint64_t seed = 1;
+  bool overwrite = false;
 };
 
 void run(const SceneArguments& arguments) {
-  requireSeparate(std::array<std::filesystem::path, 2>{arguments.output, arguments.cells}, {});
+  const std::array<std::filesystem::path, 2> files = {arguments.output, arguments.cells};
+  requireSeparate(files, {});
+  for (const std::filesystem::path& file : files) requireNew(file, arguments.overwrite);
+  const TextOutputs outputs({files.data(), 1});
   const std::vector<ViewCell> cells = generateCells(arguments.name, arguments.triangles, arguments.seed);
   const Scene scene = generateScene(arguments.name, arguments.triangles, arguments.seed);
-  saveScene(scene, arguments.output);
+  if (isStandardOutput(arguments.output)) {
+    writeObj(scene, "standard output", [&](std::string_view piece) { outputs.write(piece); });
+  } else {
+    saveScene(scene, arguments.output);
+  }
   const Bounds bounds = sceneBounds(scene);
   const glm::vec3 size = bounds.high - bounds.low;
   fmt::print("{}: {} triangles, {} vertices, {}, {:.0f} x {:.0f} x {:.0f} m\n", arguments.output,
@@ -36,10 +48,16 @@ void run(const SceneArguments& arguments) {
   fmt::print("{}: {}\n", arguments.cells, counted(cells.size(), "view cell"));
 }
 
+std::vector<std::string> sceneNames() {
+  std::vector<std::string> names;
+  for (const GeneratedSceneInfo& info : generatedScenes()) names.push_back(info.name);
+  return names;
+}
+
 std::string footer() {
   std::string text = "Scenes:\n";
   for (const GeneratedSceneInfo& info : generatedScenes()) {
-    text += fmt::format("  {:<8} {}\n", info.name, info.about);
+    text += helpEntry(info.name, info.about);
   }
   return text +
          "Units are metres, y is up. The same name, count and seed give the same file.\n\n"
@@ -53,18 +71,26 @@ std::string footer() {
 void addSceneCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("scene", "Generate a scene, and view cells that fit it");
   const auto arguments = std::make_shared<SceneArguments>();
-  command->add_option("NAME", arguments->name, "city, canyon, plant or bistro")->required();
-  command->add_option("-o,--output", arguments->output, "File to write: .obj or .glb")->required();
+  command->add_option("NAME", arguments->name, "city, canyon, plant or bistro")
+      ->required()
+      ->check(oneOf(sceneNames()));
+  command
+      ->add_option("-o,--output", arguments->output,
+                   "File to write: .obj or .glb; - writes OBJ to standard output")
+      ->required();
   command
       ->add_option("--triangles", arguments->triangles,
                    "How many, at most: 1000 to 20000000. Extent and detail grow with it")
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Another seed, another scene of the kind")
-      ->check(wholeNumber())
+      ->transform(wholeNumber())
       ->capture_default_str();
-  command->add_option("--cells", arguments->cells,
-                      "Also write ten view cells in the scene's free space to this .json file");
+  command
+      ->add_option("--cells", arguments->cells,
+                   "Also write ten view cells in the scene's free space to this .json file")
+      ->check(notStandardOutput("the cells of a scene"));
+  command->add_flag("--overwrite", arguments->overwrite, "Replace files that are there already");
   command->footer(footer());
   command->callback([arguments] { run(*arguments); });
 }

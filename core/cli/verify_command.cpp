@@ -5,7 +5,9 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
+#include "core/cli/overwrite.h"
 #include "core/crosscheck/verify.h"
 #include "core/error.h"
 #include "core/pvs/pvs_writer.h"
@@ -20,10 +22,11 @@ struct VerifyCommand {
   VerifyOptions options;
   uint64_t max_disproved = 0;
   double min_proven = 0.9999;
-  bool repair = false;
+  bool repair = false, overwrite = false;
 };
 
-void writeReport(const VerifyCommand& command, const PvsFile& pvs, const std::vector<CellProofs>& cells) {
+std::string reportText(const VerifyCommand& command, const PvsFile& pvs,
+                       const std::vector<CellProofs>& cells) {
   const Json json = {
       {"sightline", SL_VERSION},
       {"scene",
@@ -31,7 +34,7 @@ void writeReport(const VerifyCommand& command, const PvsFile& pvs, const std::ve
       {"device", pvs.device},
       {"rounding_steps", command.options.rounding.steps},
       {"cells", verifyJson(cells)}};
-  saveText(jsonText(json), command.report);
+  return jsonText(json);
 }
 
 /// Writes the sets with better witnesses and without what is disproved.
@@ -67,9 +70,11 @@ bool pastLimits(const VerifyCommand& command, const std::vector<CellProofs>& cel
 
 void run(const VerifyCommand& command) {
   requireSeparate(std::array{command.output, command.report}, std::array{command.scene, command.pvs});
-  for (const auto& output : {command.output, command.report}) {
-    if (!output.empty()) OutputFile probe(output);  // fail before the work, not after it
+  if (!command.output.empty()) {
+    requireNew(command.output, command.overwrite);
+    OutputFile probe(command.output);  // fail before the work, not after it
   }
+  const TextOutputs outputs({&command.report, 1});
   PvsFile pvs = loadFinishedCells(command.pvs);
   if (!pvs.has_witnesses) {
     throw Error(fmt::format("{}: has no witnesses; bake it with --witnesses", command.pvs.string()));
@@ -81,7 +86,7 @@ void run(const VerifyCommand& command) {
   std::vector<CellProofs> cells;
   for (CellPvs& cell : pvs.cells) cells.push_back(verifyCell(judge, scene, cell, command.options));
   std::fputs(verifyTable(cells).c_str(), stdout);
-  if (!command.report.empty()) writeReport(command, pvs, cells);
+  if (!command.report.empty()) outputs.save(reportText(command, pvs, cells), command.report);
   if (!command.output.empty()) writeBetter(command, pvs, cells);
   if (pastLimits(command, cells)) throw ExitCode{kExitPastLimit};
 }
@@ -97,13 +102,16 @@ void addVerifyCommand(CLI::App& app) {
   command
       ->add_option("-o,--output", options->output,
                    "write the sets with better witnesses, without what is disproved")
+      ->check(notStandardOutput("a .pvs file"))
       ->type_name("NEW.pvs");
-  command->add_option("--report", options->report, "write all that is not proven as JSON (docs/report.md)")
+  command
+      ->add_option("--report", options->report,
+                   "write all that is not proven as JSON (docs/report.md); - is standard output")
       ->type_name("R.json");
   command
       ->add_option("--max-disproved", options->max_disproved,
                    "exit code 3 for more triangles disproved than this")
-      ->check(between(0, 1e18))
+      ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
   command->add_option("--min-proven", options->min_proven, "exit code 3 for a smaller share proven than this")
@@ -116,6 +124,7 @@ void addVerifyCommand(CLI::App& app) {
       ->check(between(0, 1e6))
       ->type_name("STEPS")
       ->capture_default_str();
+  command->add_flag("--overwrite", options->overwrite, "replace NEW.pvs");
   command->add_flag("--repair", options->repair, "load the scene as bake --repair did");
   command->callback([options] { run(*options); });
 }

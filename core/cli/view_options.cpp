@@ -13,7 +13,7 @@ void declareViews(CLI::App& command, ViewOptions& options) {
     command
         .add_option(name, value,
                     fmt::format("{} (default: {}; where a processor traces, {})", what, usual, on_cpu))
-        ->check(between(1, most))
+        ->transform(wholeNumber(1, most))
         ->type_name("N");
   };
   declare("--views", options.views, "views of each cell", defaults.views, kViewsOnCpu, kMaxMeasureViews);

@@ -57,8 +57,8 @@ std::optional<float> readFloat(std::string_view text) {
     if (digits.find_first_of("pP") != std::string_view::npos) return readHexFloat(digits, negative);
     return negative ? std::nullopt : readBits(digits);
   }
-  const auto value = takeFloat(text);
-  return text.empty() ? value : std::nullopt;
+  const auto value = takeDecimal(text);
+  return value && text.empty() ? std::optional(value->single) : std::nullopt;
 }
 
 std::optional<glm::vec3> readVector(std::string_view text) {

@@ -1,5 +1,7 @@
 #include "core/report/status_line.h"
 
+#include <cstdio>
+
 #include "core/report/progress.h"
 
 namespace sightline {
@@ -10,16 +12,16 @@ constexpr std::chrono::milliseconds kTerminalInterval{100}, kPlainInterval{5000}
 }  // namespace
 
 void StatusLine::write(const std::string& line) {
-  const bool terminal = terminalColumns(out_) > 0;
+  const bool terminal = terminalColumns(stdout) > 0;
   next_ = std::chrono::steady_clock::now() + (terminal ? kTerminalInterval : kPlainInterval);
-  std::fputs((terminal ? "\r" + line + "\x1b[K" : line + "\n").c_str(), out_);
-  std::fflush(out_);
+  std::fputs((terminal ? "\r" + line + "\x1b[K" : line + "\n").c_str(), stdout);
+  std::fflush(stdout);
 }
 
 void StatusLine::end() {
-  if (terminalColumns(out_) == 0) return;
-  std::fputs("\r\x1b[K", out_);
-  std::fflush(out_);
+  if (terminalColumns(stdout) == 0) return;
+  std::fputs("\r\x1b[K", stdout);
+  std::fflush(stdout);
 }
 
 }  // namespace sightline

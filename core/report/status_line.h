@@ -1,16 +1,13 @@
 #pragma once
 #include <chrono>
-#include <cstdio>
 #include <string>
 
 namespace sightline {
 
-/// A line that says how far long work has come: rewritten in place on a terminal; else a
+/// A line on standard output that says how far long work has come: rewritten in place on a terminal; else a
 /// plain line every few seconds.
 class StatusLine {
  public:
-  explicit StatusLine(std::FILE* out = stdout) : out_(out) {}
-
   /// Shows what makeLine() returns, unless a line was shown only just now. The first second is silent.
   template <typename MakeLine>
   void show(MakeLine&& makeLine) {
@@ -22,7 +19,6 @@ class StatusLine {
  private:
   void write(const std::string& line);
 
-  std::FILE* out_;
   std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now() + std::chrono::seconds(1);
 };
 

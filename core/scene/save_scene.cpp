@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
 #include "core/scene/file_io.h"
+#include "core/scene/obj_text.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_builder.h"
 
@@ -13,10 +15,12 @@ namespace {
 
 using nlohmann::json;
 
+using WriteText = std::function<void(std::string_view)>;
+
 /// Collects text and passes it on in large pieces.
 class TextWriter {
  public:
-  explicit TextWriter(OutputFile& output) : output_(output) {}
+  explicit TextWriter(const WriteText& write) : write_(write) {}
   ~TextWriter() = default;
   TextWriter(const TextWriter&) = delete;
   TextWriter& operator=(const TextWriter&) = delete;
@@ -34,35 +38,15 @@ class TextWriter {
     buffer_.append(digits, size_t(result.ptr - digits));
   }
   void flush() {
-    output_.write(buffer_);
+    write_(buffer_);
     buffer_.clear();
   }
 
  private:
   static constexpr size_t kPiece = 1 << 20;
-  OutputFile& output_;
+  const WriteText& write_;
   std::string buffer_;
 };
-
-void writeObj(const Scene& scene, OutputFile& output) {
-  TextWriter writer(output);
-  for (const glm::vec3& position : scene.positions) {
-    writer.text("v");
-    for (int i = 0; i < 3; ++i) writer.number(position[i]);
-    writer.text("\n");
-  }
-  for (const SceneObject& object : scene.objects) {
-    writer.text("o " + object.name + "\n");
-    for (uint32_t i = 0; i < object.triangle_count; ++i) {
-      writer.text("f");
-      for (int corner = 0; corner < 3; ++corner) {
-        writer.number(uint64_t(scene.triangles[object.first_triangle + i][corner]) + 1);
-      }
-      writer.text("\n");
-    }
-  }
-  writer.flush();
-}
 
 /// Smallest and largest coordinates over all positions, which glTF asks for.
 std::pair<json, json> positionRange(const Scene& scene) {
@@ -139,7 +123,8 @@ void writeGlb(const Scene& scene, OutputFile& output, const std::string& name) {
 }
 
 /// The names must come back as they are.
-void checkNames(const Scene& scene, const std::string& file) {
+void checkWritable(const Scene& scene, const std::string& file) {
+  if (scene.triangles.empty()) throw Error(fmt::format("{}: the scene holds no triangles", file));
   for (size_t i = 0; i < scene.objects.size(); ++i) {
     const std::string& name = scene.objects[i].name;
     if (!name.empty() && cleanName(name) == name) continue;
@@ -152,17 +137,37 @@ void checkNames(const Scene& scene, const std::string& file) {
 
 }  // namespace
 
+void writeObj(const Scene& scene, const std::string& name, const WriteText& write) {
+  checkWritable(scene, name);
+  TextWriter writer(write);
+  for (const glm::vec3& position : scene.positions) {
+    writer.text("v");
+    for (int i = 0; i < 3; ++i) writer.number(position[i]);
+    writer.text("\n");
+  }
+  for (const SceneObject& object : scene.objects) {
+    writer.text("o " + object.name + "\n");
+    for (uint32_t i = 0; i < object.triangle_count; ++i) {
+      writer.text("f");
+      for (int corner = 0; corner < 3; ++corner) {
+        writer.number(uint64_t(scene.triangles[object.first_triangle + i][corner]) + 1);
+      }
+      writer.text("\n");
+    }
+  }
+  writer.flush();
+}
+
 void saveScene(const Scene& scene, const std::filesystem::path& file) {
   const std::string name = file.string();
   const std::string extension = lowerExtension(file);
   if (extension != ".obj" && extension != ".glb") {
     throw Error(fmt::format("{}: unknown extension \"{}\", expected .obj or .glb", name, extension));
   }
-  if (scene.triangles.empty()) throw Error(fmt::format("{}: the scene holds no triangles", name));
-  checkNames(scene, name);
+  checkWritable(scene, name);
   OutputFile output(file);
   if (extension == ".obj") {
-    writeObj(scene, output);
+    writeObj(scene, name, [&output](std::string_view piece) { output.write(piece); });
   } else {
     writeGlb(scene, output, name);
   }

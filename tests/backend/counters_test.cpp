@@ -119,7 +119,7 @@ TEST_P(Counters, AreThoseOfRaysTracedOneByOne) {
     for (const double depth : {2.0, 0.0}) {
       const std::vector<Face> faces = cellFaces({"cell", {0, 0, 0}, {3, 1, depth}});
       const StageParams params =
-          makeStageParams(bake, faces.size(), haltonShifts(1, 0, RandomUse::kSampling));
+          makeStageParams(bake, faces, haltonShifts(1, 0, RandomUse::kSampling));
       const std::vector<std::string> log = run(*device, faces, params, contained);
       const std::vector<std::string> expected = run(*naive, faces, params, contained);
       ASSERT_EQ(log.size(), expected.size());

@@ -90,7 +90,7 @@ TEST_F(CompareCommand, RefusesMoreViewsThanMeasureTakes) {
     const ProgramRun run =
         runProgram("compare " + scene() + " --cells " + cells() + " --device cpu --rays 1000 " + option);
     EXPECT_EQ(run.exit_code, 2) << run.output;
-    EXPECT_NE(run.output.find("is not a number from 1 to"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("is not a whole number from 1 to"), std::string::npos) << run.output;
   }
 }
 

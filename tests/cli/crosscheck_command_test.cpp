@@ -62,7 +62,7 @@ TEST(CrosscheckCommand, SaysWhatIsWrong) {
   expectRun("crosscheck " + city.input() + " --devices cpu --scale 1e-30", 2, {"smaller than"});
   expectRun("crosscheck " + city.input() + " --devices cpu --scale nan", 2, {"nan is not a number"});
   expectRun("crosscheck " + city.input() + " --devices cpu --rounding nan", 2, {"nan is not a number"});
-  expectRun("crosscheck " + city.input() + " --devices cpu --max-missed -1", 2, {"-1 is not a number"});
+  expectRun("crosscheck " + city.input() + " --devices cpu --max-missed -1", 2, {"-1 is not a whole number"});
   expectRun("crosscheck " + city.input(), 2, {"--devices"});
   expectRun("crosscheck " + city.input() + " --devices cpu,opencl,cpu", 2, {"--devices: cpu is named twice"});
   expectRun("crosscheck " + city.input() + " --devices opencl,opencl:0", 2, {"which is named already"});
@@ -107,12 +107,12 @@ TEST(VerifyCommand, CountsAndTakesOutWhatAFlatCellDoesNotSee) {
   pvs.has_witnesses = true;
   pvs.planned = {{"flat", {0, 0, 0}, {2, 1, 0}, {0, 0, 0}}};
   const glm::vec3 origin(0.25f, 0.125f, 0);
-  pvs.cells = {{pvs.planned[0],
-                {},
-                {0, 1, 2},
-                {{origin, glm::vec3(0, 0, 9) - origin, kStageRandom},
-                 {origin, glm::vec3(0, 0, -9) - origin, kStageBorder},
-                 {origin, glm::vec3(0, -2, -1) - origin, kStageReverse}}}};
+  CellPvs& cell = pvs.cells.emplace_back();
+  cell.cell = pvs.planned[0];
+  cell.triangles = {0, 1, 2};
+  cell.witnesses = {{origin, glm::vec3(0, 0, 9) - origin, kStageRandom},
+                    {origin, glm::vec3(0, 0, -9) - origin, kStageBorder},
+                    {origin, glm::vec3(0, -2, -1) - origin, kStageReverse}};
   savePvs(pvs, bad);
   const std::string verify = "verify " + scene_file + " ", better = (folder / "better.pvs").string();
   expectRun(verify + bad + " -o " + better + " --report " + (folder / "v.json").string(), 3,

@@ -207,7 +207,8 @@ TEST_F(MeasureCommandTest, SaysTheDefaultsOfAProcessor) {
   expectRun("measure " + input() + " --device cpu --cell 0", 0,
             {"200 views of 250 x 250 pixels a cell (the defaults of a processor)"});
   expectRun("measure --help", 0,
-            {"2000; where a processor traces, 200", "1000; where a processor traces, 250"});
+            {"(default: 2000; where a\n", "processor traces, 200)", "(default: 1000;\n",
+             "where a processor traces, 250)"});
 }
 
 TEST_F(MeasureCommandTest, SaysWhatIsWrong) {

@@ -27,8 +27,9 @@ TEST(SceneCommand, WritesWhatGenerateSceneMakes) {
   for (const std::string extension : {".obj", ".glb"}) {
     const auto file = folder / ("scene" + extension), cells = folder / "cells.json";
     for (const GeneratedSceneInfo& info : generatedScenes()) {
-      const ProgramRun run = runProgram("scene " + info.name + " -o '" + file.string() +
-                                        "' --triangles 2000 --seed 7 --cells '" + cells.string() + "'");
+      const ProgramRun run =
+          runProgram("scene " + info.name + " -o '" + file.string() +
+                     "' --triangles 2000 --seed 7 --overwrite --cells '" + cells.string() + "'");
       ASSERT_EQ(run.exit_code, 0) << run.output;
       const Scene expected = generateScene(info.name, 2'000, 7), got = loadScene(file);
       EXPECT_EQ(hashScene(got), hashScene(expected)) << info.name;

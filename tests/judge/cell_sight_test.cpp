@@ -79,7 +79,7 @@ TEST(CellSight, LetsRoundingPassAndNothingMore) {
     const ViewCell cell = cellAt(center, {size, size * 0.7, round % 2 == 0 ? 0 : size * 0.3}, rotation);
     const CellSight sight(cell);
     const std::vector<Face> faces = cellFaces(cell);
-    const StageParams params = makeStageParams(BakeParams{}, faces.size(), uvec4(1, 2, 3, 4));
+    const StageParams params = makeStageParams(BakeParams{}, faces, uvec4(1, 2, 3, 4));
     for (uint32_t i = 0; i < 100; ++i) {
       const Face& face = faces[i % faces.size()];
       const Ray ray = randomRay(random.pick(1u << 30), 0, face, params.shifts);
