@@ -221,7 +221,7 @@ void addCrosscheckCommand(CLI::App& app) {
       ->required()
       ->delimiter(',')
       ->allow_extra_args(false)
-      ->check(deviceName())
+      ->check(tracerName())
       ->type_name("A,B,...");
   command->add_option("--rays", options->options.rays, "rays of each kind, over all cells")
       ->transform(wholeNumber(1, uint64_t(1) << 40))

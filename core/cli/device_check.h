@@ -8,17 +8,24 @@
 
 namespace sightline {
 
-/// Whether makeDevice may know the name, of a device that can bake: said before the scene is loaded.
+/// Whether makeDevice may know the name: said before the scene is loaded. For commands that only trace rays.
+inline CLI::Validator tracerName() {
+  return CLI::Validator(
+      [](std::string& name) {
+        if (isDeviceName(name)) return std::string();
+        const std::vector<std::string> kinds = {"cpu", "opencl", "vulkan", "embree"};
+        return "no device \"" + name + "\"; sightline devices lists what can run here" +
+               didYouMean(name, kinds);
+      },
+      "");
+}
+
+/// The same of a device that can bake.
 inline CLI::Validator deviceName() {
   return CLI::Validator(
       [](std::string& name) {
-        if (name == "embree") {
-          return std::string("embree traces rays for crosscheck and trace only; take cpu, opencl or vulkan");
-        }
-        if (isDeviceName(name)) return std::string();
-        const std::vector<std::string> kinds = {"cpu", "opencl", "vulkan"};
-        return "no device \"" + name + "\"; sightline devices lists what can run here" +
-               didYouMean(name, kinds);
+        if (name != "embree") return tracerName()(name);
+        return std::string("embree traces rays for crosscheck and trace only; take cpu, opencl or vulkan");
       },
       "");
 }

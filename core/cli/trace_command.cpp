@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "core/cli/commands.h"
+#include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/crosscheck/difference.h"
@@ -118,6 +119,8 @@ void addTraceCommand(CLI::App& app) {
       ->type_name("X,Y,Z");
   command->add_option("--devices", options->devices, "devices that answer")
       ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(tracerName())
       ->type_name("A,B,...")
       ->default_str("cpu");
   command
@@ -129,10 +132,12 @@ void addTraceCommand(CLI::App& app) {
   command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
   command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");
   command->footer(
-      "Numbers are decimals (-1.5), hexadecimal floats (0x1.8p+0), or the bits of floats (0x3fc00000).\n"
-      "Exit code 0: every answer is right, if only up to rounding; 3: one is missed or wrong.\n\n"
+      "Numbers are decimals (-1.5), hexadecimal floats (0x1.8p+0), or the bits of\n"
+      "floats (0x3fc00000). Exit code 0: every answer is right, if only up to rounding;\n"
+      "3: one is missed or wrong.\n\n"
       "Example:\n"
-      "  sightline trace city.glb --from 0,1.5,0 --along 0x3f800000,0,0.25 --devices cpu,opencl\n");
+      "  sightline trace city.glb --from 0,1.5,0 --along 0x3f800000,0,0.25 \\\n"
+      "      --devices cpu,opencl\n");
   command->callback([options] {
     requireDistinct("--devices", options->devices);
     run(*options);

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/scene/arc_tangent.h"
 #include "core/scene/clear_box.h"
 #include "core/scene/contained.h"
 #include "core/scene/place_cells.h"
+#include "core/scene/rotation.h"
 
 namespace sightline {
 namespace {
@@ -85,7 +85,7 @@ std::vector<ViewCell> pathCells(std::span<const glm::dvec3> points, const PathOp
     // Local z leaves along the path: pitch about x first (down is positive), then yaw about y.
     const glm::dvec3 d = stretch.direction;
     const double level = lengthOf({d.x, 0, d.z});
-    const glm::dvec3 rotation(0.0 - arcTangentDegrees(d.y, level), arcTangentDegrees(d.x, d.z), 0);
+    const glm::dvec3 rotation(0.0 - atan2Degrees(d.y, level), atan2Degrees(d.x, d.z), 0);
     const double before = s > 0 ? bendLength(stretches[s - 1], stretch, options) : 0;
     const double after = s + 1 < stretches.size() ? bendLength(stretch, stretches[s + 1], options) : 0;
     for (double k = 0; k < boxes; ++k) {

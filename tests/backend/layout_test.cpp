@@ -65,7 +65,7 @@ std::vector<Layout> sharedLayouts() {
   all.push_back({"StageParams",
                  sizeof(StageParams),
                  {SL_FIELD("uvec4", counts), SL_FIELD("uvec4", shifts), SL_FIELD("vec4", distances),
-                  SL_FIELD("uvec4", method), SL_FIELD("vec4", spacing)}});
+                  SL_FIELD("uvec4", method), SL_FIELD("vec4", spacing), SL_FIELD("vec4", look)}});
 #undef SL_OF
 #define SL_OF RandomSegment
   all.push_back({"RandomSegment",
@@ -126,8 +126,8 @@ Layout launchLayout() {
       "VulkanLaunch",
       sizeof(VulkanLaunch),
       {SL_FIELD("uvec4", params.counts), SL_FIELD("uvec4", params.shifts), SL_FIELD("vec4", params.distances),
-       SL_FIELD("uvec4", params.method), SL_FIELD("vec4", params.spacing), SL_FIELD("uvec4", segment.range),
-       SL_FIELD("uvec4", segment.batch), SL_FIELD("uvec4", segment.digits),
+       SL_FIELD("uvec4", params.method), SL_FIELD("vec4", params.spacing), SL_FIELD("vec4", params.look),
+       SL_FIELD("uvec4", segment.range), SL_FIELD("uvec4", segment.batch), SL_FIELD("uvec4", segment.digits),
        SL_FIELD("uvec4", segment.coefficients), SL_FIELD("uvec4", shifts)}};
 #define SL_ADDRESS(field) launch.fields.push_back(SL_FIELD("uint64", field))
   SL_ADDRESS(tlas), SL_ADDRESS(part_starts), SL_ADDRESS(leaf_ids), SL_ADDRESS(leaf_of), SL_ADDRESS(corners);

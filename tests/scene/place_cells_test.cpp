@@ -11,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/gvs/bake_cell.h"
-#include "core/scene/arc_tangent.h"
 #include "core/scene/cell_frame.h"
 #include "core/scene/contained.h"
 #include "core/scene/generate.h"
@@ -470,21 +469,6 @@ TEST(PathCells, KeepClearAtAnyTurnInScenesOfEveryKind) {
     EXPECT_GT(kept, 100u) << name;
     EXPECT_GT(inset, 3u) << name;
     EXPECT_GT(blocked, 10u) << name;
-  }
-}
-
-TEST(PathCells, TurnByTheSameBitsAsTheArcTangent) {
-  EXPECT_EQ(arcTangentDegrees(0, 0), 0);
-  EXPECT_EQ(arcTangentDegrees(0, 3), 0);
-  EXPECT_EQ(arcTangentDegrees(0, -3), 180);
-  EXPECT_EQ(arcTangentDegrees(3, 0), 90);
-  EXPECT_EQ(arcTangentDegrees(-3, 0), -90);
-  EXPECT_EQ(arcTangentDegrees(1e200, 1e200), 45);
-  for (int i = -1800; i <= 1800; ++i) {
-    for (const double length : {1e-150, 1.0, 1e150}) {
-      const double a = i * 0.0017453292519943296, y = length * std::sin(a), x = length * std::cos(a);
-      EXPECT_NEAR(arcTangentDegrees(y, x), std::atan2(y, x) * 57.295779513082320877, 1e-13) << i;
-    }
   }
 }
 
