@@ -11,7 +11,7 @@
 #include "core/gvs/random_segment.h"
 #include "core/scene/generate.h"
 #include "core/scene/view_cell.h"
-#include "core/shared/border.h"
+#include "core/shared/gvs_border.h"
 #include "core/shared/random_ray.h"
 
 // The rays of bench_trace: random ones of cells in a generated city, and border rays of what they hit.
