@@ -195,20 +195,40 @@ int drawCells(const BakeOptions& options, const Scene& scene, Device& device, Ba
   return stop.exitCode();
 }
 
+/// Runs steps of which one that fails must not cost the others; the first failure is thrown at the end.
+class Steps {
+ public:
+  void run(auto&& step) {
+    try {
+      step();
+    } catch (...) {
+      if (!problem_) problem_ = std::current_exception();
+    }
+  }
+  void end() const {
+    if (problem_) std::rethrow_exception(problem_);
+  }
+
+ private:
+  std::exception_ptr problem_;
+};
+
 void writePage(const BakeOptions& options, const BakeReport& report, const TextOutputs& outputs,
-               BakePage& page) {
+               BakePage& page, Steps& steps) {
   page.curves.resize(report.cells.size());
   page.command = commandLine();
-  if (!options.csv.empty()) outputs.save(curvesCsv(report, page.curves), options.csv);
-  if (!options.html.empty()) outputs.save(bakePage(report, page).html(), options.html);
+  if (!options.csv.empty()) {
+    steps.run([&] { outputs.save(curvesCsv(report, page.curves), options.csv); });
+  }
+  if (!options.html.empty()) {
+    steps.run([&] { outputs.save(bakePage(report, page).html(), options.html); });
+  }
 }
 
-void writeReport(const BakeOptions& options, const Bake& bake, const TextOutputs& outputs,
-                 BakeReport& report) {
+void fillReport(const Bake& bake, BakeReport& report) {
   report.cells = bake.finished();
   report.baked_on = bake.head().device;
   report.peak_process_bytes = peakProcessBytes();
-  if (!options.report.empty()) outputs.save(reportJson(report), options.report);
 }
 
 /// The finished cells, with what there is to say about their sets, too.
@@ -258,19 +278,16 @@ void runBake(const BakeOptions& options) {
   printer.end();
 
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  writeReport(options, bake, outputs, report);
+  fillReport(bake, report);
   const std::vector<WarnedCell> warned = warnedCells(report);
   if (!report.cells.empty()) sayTable(report, warned);
-  std::exception_ptr problem;  // with the pictures; the curves are not lost for it
-  try {
-    if (exit_code == 0 && !options.pictures.empty()) {
-      exit_code = drawCells(options, scene, *tracer.device, page);
-    }
-  } catch (...) {
-    problem = std::current_exception();
+  Steps steps;
+  if (!options.report.empty()) steps.run([&] { outputs.save(reportJson(report), options.report); });
+  if (exit_code == 0 && !options.pictures.empty()) {
+    steps.run([&] { exit_code = drawCells(options, scene, *tracer.device, page); });
   }
-  writePage(options, report, outputs, page);
-  if (problem) std::rethrow_exception(problem);
+  writePage(options, report, outputs, page, steps);
+  steps.end();
   if (exit_code != 0) throw ExitCode{exit_code};
   if (options.strict_cells) refuseWarnedCells(warned);
 }

@@ -27,6 +27,10 @@ struct TraceCommand {
   bool repair = false, spatial_splits = false, json = false;
 };
 
+/// What all tracers take in scenes of up to 2^20 units (core/shared/box.h; Embree aborts near the end of
+/// floats).
+constexpr float kShortestDirection = 0x1p-60f, kLongestDirection = 0x1p60f;
+
 vec3 parseVector(const std::string& text, const char* option) {
   const auto v = readVector(text);
   if (!v) {
@@ -45,8 +49,15 @@ vec3 parseVector(const std::string& text, const char* option) {
 Ray parseRay(const TraceCommand& command) {
   const vec3 origin = parseVector(command.from, "--from"), direction = parseVector(command.along, "--along");
   const Ray ray{vec4(origin, 0), vec4(direction, 0)};
-  if (hasDirection(ray)) return ray;
-  throw Error(fmt::format("--along: '{}' is a direction of zero: such a ray meets nothing", command.along),
+  if (!hasDirection(ray)) {
+    throw Error(fmt::format("--along: '{}' is a direction of zero: such a ray meets nothing", command.along),
+                kExitUsage);
+  }
+  const float largest = maxAbs3(direction);
+  if (largest >= kShortestDirection && largest <= kLongestDirection) return ray;
+  throw Error(fmt::format("--along: '{}' is too short or too long for tracers: its largest component must be "
+                          "from 2^-60 to 2^60; scale it, and t with it",
+                          command.along),
               kExitUsage);
 }
 
@@ -114,7 +125,7 @@ void addTraceCommand(CLI::App& app) {
   const auto options = std::make_shared<TraceCommand>();
   command->add_option("scene", options->scene, ".obj, .gltf, .glb or .ply")->required()->type_name("SCENE");
   command->add_option("--from", options->from, "where the ray begins")->required()->type_name("X,Y,Z");
-  command->add_option("--along", options->along, "its direction, of any length; t counts in units of it")
+  command->add_option("--along", options->along, "its direction; t counts in units of it")
       ->required()
       ->type_name("X,Y,Z");
   command->add_option("--devices", options->devices, "devices that answer")

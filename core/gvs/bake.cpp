@@ -118,7 +118,12 @@ bool Bake::openComplete() {
   if (!std::filesystem::exists(file_)) return false;
   const PvsFile earlier = loadEarlier(loadPvs, file_);
   if (const std::string why = whyOther(earlier, head_, file_); !why.empty()) throw Error(why);
-  if (earlier.cells.size() != earlier.planned.size()) return false;
+  if (earlier.cells.size() != earlier.planned.size()) {
+    throw Error(
+        fmt::format("{}: holds {} of {} cells, which a bake would replace; choose another -o, or "
+                    "--overwrite it",
+                    file_.string(), earlier.cells.size(), earlier.planned.size()));
+  }
   finished_ = summarize(earlier);
   resumed_ = finished_.size();
   head_.device = earlier.device;

@@ -343,6 +343,17 @@ TEST(BakeCommand, DoesNotGoOnAfterAnotherRevisionOfTheAlgorithm) {
   EXPECT_TRUE(contains(run, "--overwrite")) << run.output;
 }
 
+TEST(BakeCommand, AnOutputThatFailsCostsNoOther) {
+  const Workplace place;
+  const std::string outputs = fmt::format("--report - --html {} --csv {}", place / "x.html", place / "x.csv");
+  const std::string command =
+      fmt::format("{} {} > /dev/full 2> {}", SL_PROGRAM, place.bake("x.pvs", outputs), place / "log");
+  EXPECT_NE(std::system(command.c_str()), 0);
+  for (const char* name : {"x.pvs", "x.html", "x.csv"}) {
+    EXPECT_TRUE(std::filesystem::exists(place / name)) << name;
+  }
+}
+
 TEST(BakeCommand, DevicesSayWhetherTheyAreExact) {
   for (const DeviceInfo& device : listDevices()) {
     if (!device.unusable.empty() || device.id == "embree") continue;  // embree bakes nothing

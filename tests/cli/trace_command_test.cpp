@@ -106,6 +106,16 @@ TEST(CrosscheckCommand, ReproducesDisagreements) {
   expectRun(start + "--kinds random --overwrite --reproduce " + out, 0, {"of an earlier run removed"});
 }
 
+TEST(TraceCommand, DirectionsBeyondWhatTracersTakeAreRefused) {
+  const Walls walls;
+  for (const char* direction : {"1e-30,0,0", "1e-38,1e-40,0", "1e20,1e20,0", "3e38,0,0"}) {
+    expectRun(walls.trace(std::string("--from 0,0,0 --devices cpu --along ") + direction), 2,
+              {"--along: ", "too short or too long", "scale it"});
+  }
+  expectRun(walls.trace("--from 0,0,0 --along 0,0,-0x1p-60 --devices cpu"), 0, {});
+  expectRun(walls.trace("--from 0,0,0 --along 0,0,-0x1p60 --devices cpu"), 0, {});
+}
+
 TEST(TraceCommand, EmbreeIsAPeerAndBakesNothing) {
   const Walls folder;
   const std::string city = folder / "city.glb", cells = folder / "cells.json";

@@ -252,6 +252,17 @@ TEST(Bake, RefusesCellsThatNoReaderWouldTake) {
             "cells[3].size: the cell has no area; at most one extent may be 0");
 }
 
+/// As verify writes of a bake that was stopped: what was improved in it is not to be had again.
+TEST(Bake, AnUnfinishedFileIsReplacedOnlyWhenAsked) {
+  TemporaryFolder folder;
+  PvsFile some = fiveCells();
+  some.cells.push_back(fakeBaker(some.planned[0], 0, {}));
+  savePvs(some, folder / "x.pvs");
+  EXPECT_NE(problem(fiveCells(), folder / "x.pvs").find("holds 1 of 5 cells"), std::string::npos);
+  EXPECT_TRUE(Bake(fiveCells(), folder / "x.pvs", true).run("fake", fakeBaker));
+  EXPECT_EQ(loadPvs(folder / "x.pvs").cells.size(), 5u);
+}
+
 /// Whoever uses the library catches std::exception.
 TEST(Bake, WhatItThrowsIsAnException) {
   EXPECT_TRUE((std::is_base_of_v<std::exception, Interrupted>));
