@@ -9,6 +9,7 @@
 #include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
+#include "core/cli/rounding_option.h"
 #include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
 #include "core/crosscheck/crosscheck.h"
@@ -245,12 +246,7 @@ void addCrosscheckCommand(CLI::App& app) {
       ->transform(wholeNumber())
       ->type_name("N")
       ->capture_default_str();
-  command
-      ->add_option("--rounding", options->options.rounding.steps,
-                   "float steps beside an edge that count as rounding")
-      ->check(between(0, 1e6))
-      ->type_name("STEPS")
-      ->capture_default_str();
+  declareRounding(*command, options->options.rounding);
   command->add_option("--scale", options->scale, "multiply scene and cells by this first")
       ->check(between(1e-38, 1e38))
       ->type_name("X")

@@ -7,7 +7,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
-#include "core/cli/number_checks.h"
+#include "core/cli/rounding_option.h"
 #include "core/crosscheck/difference.h"
 #include "core/crosscheck/float_text.h"
 #include "core/crosscheck/ray_answers.h"
@@ -134,11 +134,7 @@ void addTraceCommand(CLI::App& app) {
       ->check(tracerName())
       ->type_name("A,B,...")
       ->default_str("cpu");
-  command
-      ->add_option("--rounding", options->rounding.steps, "float steps beside an edge that count as rounding")
-      ->check(between(0, 1e6))
-      ->type_name("STEPS")
-      ->capture_default_str();
+  declareRounding(*command, options->rounding);
   command->add_flag("--json", options->json, "print JSON (docs/report.md)");
   command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
   command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");

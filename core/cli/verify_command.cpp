@@ -8,6 +8,7 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
+#include "core/cli/rounding_option.h"
 #include "core/crosscheck/verify.h"
 #include "core/error.h"
 #include "core/pvs/pvs_writer.h"
@@ -118,12 +119,7 @@ void addVerifyCommand(CLI::App& app) {
       ->check(between(0, 1))
       ->type_name("SHARE")
       ->capture_default_str();
-  command
-      ->add_option("--rounding", options->options.rounding.steps,
-                   "float steps beside an edge that count as rounding")
-      ->check(between(0, 1e6))
-      ->type_name("STEPS")
-      ->capture_default_str();
+  declareRounding(*command, options->options.rounding);
   command->add_flag("--overwrite", options->overwrite, "replace NEW.pvs");
   command->add_flag("--repair", options->repair, "load the scene as bake --repair did");
   command->callback([options] { run(*options); });

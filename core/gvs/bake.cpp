@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include "core/error.h"
-#include "core/scene/check_cells.h"
+#include "core/scene/cell_problem.h"
 #include "core/scene/file_io.h"
 
 namespace sightline {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/pvs/set_codec.h"
-#include "core/scene/check_cells.h"
+#include "core/scene/cell_problem.h"
 
 namespace sightline {
 namespace {

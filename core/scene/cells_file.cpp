@@ -4,7 +4,7 @@
 
 #include "core/error.h"
 #include "core/scene/cells_text.h"
-#include "core/scene/check_cells.h"
+#include "core/scene/cell_problem.h"
 #include "core/scene/file_io.h"
 #include "core/scene/json_text.h"
 #include "core/scene/view_cell.h"

@@ -1,4 +1,4 @@
-#include "core/scene/check_cells.h"
+#include "core/scene/cell_problem.h"
 
 #include <fmt/format.h>
 
