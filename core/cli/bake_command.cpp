@@ -11,16 +11,20 @@
 #include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
 #include "core/device/cpu_tracer.h"
+#include "core/device/make_device.h"
 #include "core/device/naive_device.h"
 #include "core/error.h"
 #include "core/gvs/algorithm_revision.h"
 #include "core/gvs/bake.h"
 #include "core/report/bake_page.h"
 #include "core/report/cell_pictures.h"
+#include "core/report/cell_table.h"
 #include "core/report/progress.h"
 #include "core/report/report.h"
 #include "core/report/text.h"
+#include "core/scene/cells_file.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 
 namespace sightline {
 namespace {

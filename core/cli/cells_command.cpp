@@ -18,11 +18,13 @@
 #include "core/cli/text_outputs.h"
 #include "core/error.h"
 #include "core/gvs/bake_cell.h"
+#include "core/interrupted.h"
 #include "core/report/status_line.h"
 #include "core/report/text.h"
-#include "core/scene/cells_text.h"
+#include "core/scene/cells_file.h"
 #include "core/scene/clear_box.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 #include "core/scene/place_cells.h"
 
 namespace sightline {

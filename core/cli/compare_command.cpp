@@ -13,11 +13,15 @@
 #include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
 #include "core/compare/comparison_report.h"
+#include "core/device/make_device.h"
 #include "core/device/naive_device.h"
 #include "core/error.h"
+#include "core/interrupted.h"
 #include "core/report/status_line.h"
 #include "core/report/text.h"
+#include "core/scene/cells_file.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 
 namespace sightline {
 namespace {

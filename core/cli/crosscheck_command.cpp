@@ -17,10 +17,14 @@
 #include "core/crosscheck/place.h"
 #include "core/crosscheck/pvs_difference.h"
 #include "core/crosscheck/reproduce.h"
+#include "core/device/make_device.h"
 #include "core/error.h"
+#include "core/interrupted.h"
 #include "core/report/status_line.h"
 #include "core/report/text.h"
+#include "core/scene/cells_file.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 
 namespace sightline {
 namespace {

@@ -12,7 +12,9 @@
 #include "core/pvs/pvs_writer.h"
 #include "core/report/export.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 #include "core/scene/obj_text.h"
+#include "core/scene/save_scene.h"
 
 namespace sightline {
 namespace {

@@ -16,8 +16,10 @@
 #include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
+#include "core/device/make_device.h"
 #include "core/error.h"
 #include "core/gvs/bake_cell.h"
+#include "core/interrupted.h"
 #include "core/measure/measure_page.h"
 #include "core/measure/worst_pictures.h"
 #include "core/pvs/choose_cell.h"
@@ -25,6 +27,7 @@
 #include "core/report/status_line.h"
 #include "core/report/text.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 
 namespace sightline {
 namespace {

@@ -12,12 +12,14 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/device/device.h"
+#include "core/device/make_device.h"
 #include "core/error.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/report/picture.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

@@ -10,9 +10,11 @@
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
 #include "core/report/text.h"
+#include "core/scene/cells_file.h"
 #include "core/scene/file_io.h"
 #include "core/scene/generate.h"
 #include "core/scene/obj_text.h"
+#include "core/scene/save_scene.h"
 
 namespace sightline {
 namespace {

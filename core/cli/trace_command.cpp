@@ -11,9 +11,11 @@
 #include "core/crosscheck/difference.h"
 #include "core/crosscheck/float_text.h"
 #include "core/crosscheck/ray_answers.h"
+#include "core/device/make_device.h"
 #include "core/error.h"
 #include "core/report/report.h"
 #include "core/report/text.h"
+#include "core/scene/load_scene.h"
 #include "core/shared/ray.h"
 
 namespace sightline {

@@ -14,6 +14,7 @@
 #include "core/pvs/pvs_writer.h"
 #include "core/report/text.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 
 namespace sightline {
 namespace {

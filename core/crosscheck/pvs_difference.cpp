@@ -7,6 +7,7 @@
 
 #include "core/crosscheck/float_text.h"
 #include "core/crosscheck/ray_answers.h"
+#include "core/pvs/stage_name.h"
 #include "core/report/text.h"
 
 namespace sightline {

@@ -2,6 +2,7 @@
 
 #include "core/crosscheck/float_text.h"
 #include "core/crosscheck/verify.h"
+#include "core/pvs/stage_name.h"
 #include "core/report/text.h"
 
 namespace sightline {

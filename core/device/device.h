@@ -7,28 +7,13 @@
 #include <vector>
 
 #include "bvh/bvh.h"
+#include "core/device/device_info.h"
 #include "core/scene/scene.h"
 #include "core/shared/stage_params.h"
 #include "core/shared/types.h"
 #include "core/shared/view_ray.h"
 
 namespace sightline {
-
-/// What a device is, for reports and `sightline devices`.
-struct DeviceInfo {
-  std::string id;        ///< what --device takes: "cpu", "opencl:0", "vulkan:0"
-  std::string name;      ///< e.g. the OpenCL device's name
-  std::string driver;    ///< version
-  std::string layout;    ///< tree layout and kind of traversal, e.g. "bvh2, packets of 8"
-  std::string unusable;  ///< why it cannot run; empty: it can
-  uint64_t memory_bytes = 0;
-  bool on_cpu = false;  ///< a processor does the work (cpu, PoCL, lavapipe): fewer rays are to be had
-  bool exact = false;   ///< traces by core/shared/triangle.h, as cpu and opencl do: same sets, bit for bit
-  // The driver's own trees (vulkan), once a scene is on the device; else 0.
-  uint32_t driver_tree_parts = 0;        ///< bottom-level acceleration structures
-  uint64_t driver_tree_bytes = 0;        ///< of all acceleration structures
-  double driver_tree_build_seconds = 0;  ///< with compaction
-};
 
 /// How a device keeps the set of found triangles. The result is the same.
 enum class SetKind { kAuto, kArray, kHash };
@@ -130,25 +115,5 @@ inline size_t viewsALaunch(uint32_t resolution) {
   constexpr uint64_t kPixels = 1u << 24;
   return std::max<uint64_t>(1, kPixels / (uint64_t(resolution) * resolution));
 }
-
-/// Devices that this machine has, the unusable ones with their reason.
-std::vector<DeviceInfo> listDevices();
-
-/// Throws Error as makeDevice would if `name` selects no device that can run here: at once, before the work
-/// that a tree takes.
-void requireDevice(const std::string& name);
-
-/// Whose intersection test decides what rays hit on the device that `name` selects: empty for that of
-/// core/shared, whose sets are the same on every device; else (vulkan) the device's name and its driver's
-/// version. Throws Error as requireDevice, where it must look at the device.
-std::string intersectorOf(const std::string& name);
-
-/// Whether makeDevice could know the name: "cpu"; "opencl" or "vulkan", alone or with ":" and more.
-bool isDeviceName(const std::string& name);
-
-/// Makes the device that `name` selects and uploads the scene: "cpu", "opencl", "opencl:INDEX",
-/// "opencl:PART-OF-NAME", or the same with "vulkan". Throws Error that lists what there is.
-std::unique_ptr<Device> makeDevice(const std::string& name, const Scene& scene, const Bvh& bvh,
-                                   const DeviceOptions& options = {});
 
 }  // namespace sightline

@@ -1,6 +1,6 @@
 #include "core/device/opencl_set.h"
 
-#include "core/device/host_set.h"
+#include "core/device/hash_capacity.h"
 
 namespace sightline {
 OpenClSet::OpenClSet(OpenClContext& context, const ClBuffer& overflow, uint32_t triangle_count, bool hash)

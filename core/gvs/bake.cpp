@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "core/error.h"
+#include "core/interrupted.h"
 #include "core/scene/cell_problem.h"
 #include "core/scene/file_io.h"
 

@@ -19,6 +19,7 @@
 #include "core/gvs/make_stage_params.h"
 #include "core/gvs/random_segment.h"
 #include "core/gvs/rays_in_time.h"
+#include "core/interrupted.h"
 #include "core/scene/cell_problem.h"
 #include "core/scene/contained.h"
 #include "core/shared/border.h"

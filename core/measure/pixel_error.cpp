@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/gvs/bake_cell.h"
+#include "core/interrupted.h"
 #include "core/measure/classifier.h"
 
 namespace sightline {

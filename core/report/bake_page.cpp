@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/pvs/stage_name.h"
+#include "core/report/cell_table.h"
 #include "core/report/csv.h"
 #include "core/report/curve_range.h"
 #include "core/report/text.h"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/pvs/stage_name.h"
 #include "core/report/text.h"
 
 namespace sightline {

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "core/error.h"
-#include "core/scene/cells_text.h"
+#include "core/scene/cells_file.h"
 #include "core/scene/cell_problem.h"
 #include "core/scene/file_io.h"
 #include "core/scene/json_text.h"

@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/scene/beside.h"
 #include "core/scene/decimal.h"
+#include "core/scene/load_scene.h"
 #include "core/scene/loaders.h"
 #include "core/scene/mtl_file.h"
 #include "core/scene/obj_lines.h"

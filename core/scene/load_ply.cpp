@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/scene/decimal.h"
+#include "core/scene/load_scene.h"
 #include "core/scene/loaders.h"
 #include "core/scene/ply_header.h"
 #include "core/scene/scene_builder.h"

@@ -1,6 +1,6 @@
 #pragma once
 #include "core/scene/file_io.h"
-#include "core/scene/scene.h"
+#include "core/scene/load_scene.h"
 
 namespace sightline {
 

@@ -1,3 +1,5 @@
+#include "core/scene/save_scene.h"
+
 #include <fmt/format.h>
 
 #include <charconv>

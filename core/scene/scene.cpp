@@ -1,6 +1,5 @@
 #include "core/scene/scene.h"
 
-#include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 #include <xxhash.h>
@@ -8,32 +7,9 @@
 #include <array>
 #include <bit>
 #include <limits>
-#include <map>
 #include <memory>
 
-#include "core/error.h"
-#include "core/scene/loaders.h"
-
 namespace sightline {
-
-Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options) {
-  using Loader = Scene (*)(FileBytes, const std::filesystem::path&, const SceneLoadOptions&);
-  static const std::map<std::string, Loader> loaders = {
-      {".obj", loadObj}, {".gltf", loadGltf}, {".glb", loadGlb}, {".ply", loadPly}};
-  const std::string extension = lowerExtension(file);
-  const auto loader = loaders.find(extension);
-  if (loader == loaders.end()) {
-    throw Error(fmt::format("{}: unknown extension \"{}\", expected .obj, .gltf, .glb or .ply", file.string(),
-                            extension));
-  }
-  FileBytes bytes = readFile(file);
-  if (bytes.size == 0) throw Error(fmt::format("{}: is empty", file.string()));
-  try {
-    return loader->second(std::move(bytes), file, options);
-  } catch (const std::bad_alloc&) {
-    throw Error(fmt::format("{}: does not fit into memory", file.string()));
-  }
-}
 
 uint64_t hashScene(const Scene& scene) {
   static_assert(std::endian::native == std::endian::little, "the hash is of little-endian bytes");

@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
@@ -47,24 +46,6 @@ inline constexpr float kLargestCoordinate = 0x1p40f;
 /// No scene's extent and no extent of a view cell (but 0) is below this: smaller ones leave the normal floats
 /// where distances are multiplied.
 inline constexpr float kSmallestExtent = 0x1p-60f;
-
-struct SceneLoadOptions {
-  /// Drop triangles with an index out of range or a coordinate that is not finite or too large instead of
-  /// failing.
-  bool repair = false;
-};
-
-/// Loads .obj, .gltf, .glb or .ply (by extension, any case). Polygons are triangulated, concave ones too.
-/// glTF: the default scene with its nodes' transforms; skins in the pose of their joints, morph targets with
-/// their default weights; mirrored nodes keep their front (the corners' order is turned). Materials count,
-/// textures are not touched. Files that the scene names are read only from its own folder and those below.
-/// Throws Error with file and place. The largest files: 20 million triangles take about 1.7 GiB in all as
-/// OBJ, half of it as GLB or PLY, and a sixth of OBJ's time.
-Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
-
-/// Writes .obj or .glb (by extension) so that loadScene returns the same positions, triangles and objects,
-/// bit for bit. Writes to a temporary name and renames. A GLB holds less than 4 GiB. Throws Error.
-void saveScene(const Scene& scene, const std::filesystem::path& file);
 
 /// Hash of positions and triangles (XXH3, 64 bit): what a PVS depends on.
 uint64_t hashScene(const Scene& scene);

@@ -1,5 +1,4 @@
 #pragma once
-#include <filesystem>
 #include <glm/glm.hpp>
 #include <string>
 #include <vector>
@@ -29,12 +28,5 @@ std::vector<Face> cellFaces(const ViewCell& cell);
 
 /// World-space corners of the cell, 8 of them (pairs coincide along an axis of size zero).
 std::vector<glm::vec3> cellCorners(const ViewCell& cell);
-
-/// Reads and checks a cells file. Unknown keys (but x-...), missing keys, names twice, non-finite numbers, cells
-/// without area are errors that name file and place. Throws Error.
-std::vector<ViewCell> loadCells(const std::filesystem::path& file);
-
-/// Writes a cells file that loadCells reads back exactly.
-void saveCells(const std::vector<ViewCell>& cells, const std::filesystem::path& file);
 
 }  // namespace sightline

@@ -2,6 +2,7 @@
 // direction is none.
 #include <gtest/gtest.h>
 
+#include "core/device/make_device.h"
 #include "core/device/naive_device.h"
 #include "core/gvs/face_rays.h"
 #include "core/gvs/make_stage_params.h"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/device/make_device.h"
 #include "core/device/naive_device.h"
 #include "core/error.h"
 #include "core/scene/generate.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/device/make_device.h"
 #include "core/device/vulkan_devices.h"
 #include "core/error.h"
 #include "core/gvs/hemicube.h"

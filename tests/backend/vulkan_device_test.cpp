@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/device/cpu_tracer.h"
+#include "core/device/make_device.h"
 #include "core/device/naive_device.h"
 #include "core/error.h"
 #include "core/gvs/random_segment.h"

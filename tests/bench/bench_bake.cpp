@@ -11,7 +11,10 @@
 #include <vector>
 
 #include "core/cli/number_checks.h"
+#include "core/device/make_device.h"
 #include "core/gvs/bake_cell.h"
+#include "core/scene/cells_file.h"
+#include "core/scene/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/bench/bench_main.h"
 #include "tests/bench/timed_device.h"

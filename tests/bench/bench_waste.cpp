@@ -15,11 +15,14 @@
 #include <vector>
 
 #include "core/cli/number_checks.h"
+#include "core/device/make_device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/gvs/face_rays.h"
 #include "core/gvs/make_stage_params.h"
 #include "core/gvs/stage_rays.h"
 #include "core/gvs/thesis_params.h"
+#include "core/scene/cells_file.h"
+#include "core/scene/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/bench/bench_main.h"
 

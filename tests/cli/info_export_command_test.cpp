@@ -7,7 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.h"
+#include "core/scene/cells_file.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"
 #include "tests/output/version_3_file.h"

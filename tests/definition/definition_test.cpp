@@ -1,4 +1,5 @@
 // Sets against their definition, in both directions, for all kinds of cells; and faults that this must find.
+#include "core/device/make_device.h"
 #include "tests/definition/definition.h"
 
 #include <gtest/gtest.h>

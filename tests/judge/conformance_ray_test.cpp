@@ -5,6 +5,7 @@
 #include <bit>
 
 #include "core/device/embree_device.h"
+#include "core/device/make_device.h"
 #include "core/judge/ruling.h"
 
 namespace sightline {

@@ -3,6 +3,7 @@
 
 #include "core/crosscheck/crosscheck.h"
 #include "core/device/embree_device.h"
+#include "core/device/make_device.h"
 #include "core/error.h"
 #include "tests/judge/judge_cases.h"
 #include "tests/support/bake_scene.h"

@@ -8,6 +8,7 @@
 #include "core/crosscheck/crosscheck.h"
 #include "core/error.h"
 #include "core/scene/file_io.h"
+#include "core/scene/load_scene.h"
 #include "tests/judge/judge_cases.h"
 #include "tests/judge/wrong_device.h"
 #include "tests/support/temporary_folder.h"

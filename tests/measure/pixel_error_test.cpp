@@ -1,4 +1,6 @@
 // Scenes whose pixel error is known by construction.
+#include "core/device/make_device.h"
+#include "core/interrupted.h"
 #include "core/measure/pixel_error.h"
 
 #include <gtest/gtest.h>

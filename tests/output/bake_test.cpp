@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
+#include "core/interrupted.h"
 #include "tests/output/example_pvs.h"
 #include "tests/output/system_calls.h"
 #include "tests/output/version_3_file.h"

@@ -1,3 +1,4 @@
+#include "core/report/cell_table.h"
 #include "core/report/report.h"
 
 #include <gtest/gtest.h>

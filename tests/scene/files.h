@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/error.h"
+#include "core/scene/load_scene.h"
 #include "core/scene/scene.h"
 
 namespace sightline::test {

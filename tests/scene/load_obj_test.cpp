@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/scene/decimal.h"
+#include "core/scene/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 

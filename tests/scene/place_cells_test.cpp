@@ -1,3 +1,4 @@
+#include "core/interrupted.h"
 #include "core/scene/place_cells.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+#include "core/device/hash_capacity.h"
 #include "core/shared/set.h"
 
 #include <gtest/gtest.h>

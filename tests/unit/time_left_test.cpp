@@ -1,6 +1,7 @@
 // What a bake says about the time it still takes.
 #include <gtest/gtest.h>
 
+#include "core/device/make_device.h"
 #include "core/scene/generate.h"
 #include "tests/support/bake_scene.h"
 

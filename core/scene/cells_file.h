@@ -1,0 +1,20 @@
+#pragma once
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/scene/view_cell.h"
+
+namespace sightline {
+
+/// Reads and checks a cells file. Unknown keys (but x-...), missing keys, names twice, non-finite numbers, cells
+/// without area are errors that name file and place. Throws Error.
+std::vector<ViewCell> loadCells(const std::filesystem::path& file);
+
+/// Writes a cells file that loadCells reads back exactly.
+void saveCells(const std::vector<ViewCell>& cells, const std::filesystem::path& file);
+
+/// The text of a cells file that loadCells reads back exactly. Throws Error that begins with `file`.
+std::string cellsText(const std::vector<ViewCell>& cells, const std::string& file);
+
+}  // namespace sightline
