@@ -1,6 +1,7 @@
 #include "core/device/opencl_set.h"
 
 #include "core/device/hash_capacity.h"
+#include "core/shared/set.h"
 
 namespace sightline {
 OpenClSet::OpenClSet(OpenClContext& context, const ClBuffer& overflow, uint32_t triangle_count, bool hash)

@@ -1,6 +1,7 @@
 #include "core/device/vulkan_set.h"
 
 #include "core/device/hash_capacity.h"
+#include "core/shared/set.h"
 
 namespace sightline {
 VulkanSet::VulkanSet(const VulkanContext& context, VulkanRunner& runner, uint32_t triangle_count, bool hash)
