@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include "core/error.h"
-#include "core/report/text.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/text_outputs.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/report/export.h"

@@ -4,7 +4,7 @@
 
 #include "core/cli/commands.h"
 #include "core/cli/nearest.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

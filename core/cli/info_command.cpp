@@ -8,7 +8,7 @@
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/report/cell_table.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 #include "core/scene/cells_file.h"
 #include "core/scene/file_io.h"
 #include "core/scene/load_scene.h"

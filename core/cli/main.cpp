@@ -13,7 +13,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/help_format.h"
 #include "core/cli/usage.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "core/cli/text_outputs.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/file_io.h"
 
 namespace sightline {

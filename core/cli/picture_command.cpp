@@ -13,7 +13,7 @@
 #include "core/cli/number_checks.h"
 #include "core/device/device.h"
 #include "core/device/make_device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs.h"
 #include "core/pvs/pvs_writer.h"

@@ -9,7 +9,7 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 #include "core/scene/cells_file.h"
 #include "core/scene/file_io.h"
 #include "core/scene/generate.h"

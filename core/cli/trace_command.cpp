@@ -12,9 +12,9 @@
 #include "core/crosscheck/float_text.h"
 #include "core/crosscheck/ray_answers.h"
 #include "core/device/make_device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/report/report.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 #include "core/scene/load_scene.h"
 #include "core/shared/ray.h"
 

@@ -10,9 +10,9 @@
 #include "core/cli/overwrite.h"
 #include "core/cli/rounding_option.h"
 #include "core/crosscheck/verify.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/pvs/pvs_writer.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 #include "core/scene/file_io.h"
 #include "core/scene/load_scene.h"
 

@@ -2,7 +2,7 @@
 
 #include "core/compare/comparison_report.h"
 #include "core/report/bake_page.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

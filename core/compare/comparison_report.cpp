@@ -4,7 +4,7 @@
 
 #include "core/report/csv.h"
 #include "core/report/report_json.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

@@ -12,7 +12,7 @@
 #include "core/device/cpu_device.h"
 #include "core/device/trace_only_device.h"
 #include "core/gvs/bake_cell.h"
-#include "core/interrupted.h"
+#include "core/base/interrupted.h"
 #include "core/shared/ray.h"
 
 namespace sightline {

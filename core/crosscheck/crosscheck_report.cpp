@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/report/text.h"
+#include "core/base/text.h"
 #include "core/shared/vector.h"
 
 namespace sightline {

@@ -2,7 +2,7 @@
 #include <cstdint>
 
 #include "core/shared/language.h"
-#include "core/splitmix.h"
+#include "core/base/splitmix.h"
 
 namespace sightline {
 

@@ -9,7 +9,7 @@
 #include "core/crosscheck/difference.h"
 #include "core/crosscheck/float_text.h"
 #include "core/device/make_device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/judge/seen_triangle.h"
 #include "core/scene/file_io.h"
 #include "core/shared/vector.h"

@@ -3,7 +3,7 @@
 #include "core/crosscheck/float_text.h"
 #include "core/crosscheck/verify.h"
 #include "core/pvs/stage_name.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

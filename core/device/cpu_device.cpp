@@ -14,7 +14,7 @@
 
 #include "core/device/cpu_tracer.h"
 #include "core/device/host_set.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gvs/random_segment.h"
 #include "core/gvs/stage_rays.h"
 

@@ -1,6 +1,6 @@
 #include "core/device/device.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 

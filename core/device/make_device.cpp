@@ -8,7 +8,7 @@
 #include "core/device/opencl_device.h"
 #include "core/device/vulkan_device.h"
 #include "core/device/vulkan_devices.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 

@@ -6,8 +6,8 @@
 
 #include "cl_kernels/program_source.h"
 #include "core/device/opencl_devices.h"
-#include "core/device/parallel_copy.h"
-#include "core/error.h"
+#include "core/base/parallel_copy.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "core/device/select_device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

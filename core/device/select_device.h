@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/device/device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 

@@ -5,7 +5,7 @@
 
 #include <bit>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 #include "core/device/device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/device/parallel_copy.h"
+#include "core/base/parallel_copy.h"
 #include "core/device/vulkan_raster.h"
 #include "core/device/vulkan_scene.h"
 #include "core/device/vulkan_set.h"

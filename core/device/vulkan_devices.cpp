@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/device/select_device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

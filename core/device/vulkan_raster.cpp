@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/device/vulkan_stage.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

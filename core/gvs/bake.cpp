@@ -2,8 +2,8 @@
 
 #include <fmt/core.h>
 
-#include "core/error.h"
-#include "core/interrupted.h"
+#include "core/base/error.h"
+#include "core/base/interrupted.h"
 #include "core/scene/cell_problem.h"
 #include "core/scene/file_io.h"
 

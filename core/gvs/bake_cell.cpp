@@ -8,7 +8,7 @@
 #include <iterator>
 
 #include "core/device/naive_device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gvs/error_bound.h"
 #include "core/gvs/exploration_yield.h"
 #include "core/gvs/face_rays.h"
@@ -19,7 +19,7 @@
 #include "core/gvs/make_stage_params.h"
 #include "core/gvs/random_segment.h"
 #include "core/gvs/rays_in_time.h"
-#include "core/interrupted.h"
+#include "core/base/interrupted.h"
 #include "core/scene/cell_problem.h"
 #include "core/scene/contained.h"
 #include "core/shared/border.h"

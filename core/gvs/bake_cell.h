@@ -5,7 +5,7 @@
 #include "core/device/device.h"
 #include "core/gvs/bake_progress.h"
 #include "core/gvs/bake_trace.h"
-#include "core/interrupted.h"
+#include "core/base/interrupted.h"
 #include "core/pvs/pvs.h"
 #include "core/scene/scene.h"
 

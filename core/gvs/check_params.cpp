@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gvs/bake_cell.h"
 
 namespace sightline {

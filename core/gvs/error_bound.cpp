@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "core/pvs/pvs.h"
-#include "core/splitmix.h"
+#include "core/base/splitmix.h"
 
 namespace sightline {
 namespace {

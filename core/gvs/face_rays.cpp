@@ -5,7 +5,7 @@
 
 #include "core/shared/halton.h"
 #include "core/shared/vector.h"
-#include "core/splitmix.h"
+#include "core/base/splitmix.h"
 
 namespace sightline {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/report/csv.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

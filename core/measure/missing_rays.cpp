@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gvs/face_rays.h"
 #include "core/shared/random_ray.h"
 

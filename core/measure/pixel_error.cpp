@@ -8,9 +8,9 @@
 #include <chrono>
 #include <numeric>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gvs/bake_cell.h"
-#include "core/interrupted.h"
+#include "core/base/interrupted.h"
 #include "core/measure/classifier.h"
 
 namespace sightline {

@@ -5,7 +5,7 @@
 
 #include "core/scene/rotation.h"
 #include "core/shared/halton.h"
-#include "core/splitmix.h"
+#include "core/base/splitmix.h"
 
 namespace sightline {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <regex>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/report/cell_pictures.h"
 #include "core/report/shading.h"
 #include "core/report/view_picture.h"

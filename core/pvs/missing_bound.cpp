@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/pvs/portable_math.h"
+#include "core/base/portable_math.h"
 #include "core/pvs/pvs.h"
 
 namespace sightline {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/pvs/method.h"
 #include "core/pvs/order.h"
 #include "core/scene/scene.h"

@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/pvs/checksum.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/scene/publish.h"

@@ -1,6 +1,6 @@
 #include <fmt/core.h>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/pvs/pvs.h"
 
 namespace sightline {

@@ -9,7 +9,7 @@
 #include "core/report/cell_table.h"
 #include "core/report/csv.h"
 #include "core/report/curve_range.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

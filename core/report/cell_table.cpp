@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

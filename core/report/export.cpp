@@ -4,9 +4,9 @@
 
 #include <iterator>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/report/cell_json.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

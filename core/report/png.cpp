@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/file_io.h"
 
 namespace sightline {

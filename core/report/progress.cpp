@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/pvs/stage_name.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/report/cell_json.h"
 #include "core/report/report_json.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 namespace {

@@ -1,6 +1,6 @@
 #include "core/report/report_json.h"
 
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 namespace sightline {
 

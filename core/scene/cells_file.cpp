@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/cells_file.h"
 #include "core/scene/cell_problem.h"
 #include "core/scene/file_io.h"

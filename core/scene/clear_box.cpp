@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/box_triangle.h"
 #include "core/scene/leaves_in_box.h"
 

@@ -1,6 +1,6 @@
 #include "core/scene/generate.h"
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/scene_generators.h"
 
 namespace sightline {

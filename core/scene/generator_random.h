@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "core/splitmix.h"
+#include "core/base/splitmix.h"
 
 namespace sightline {
 

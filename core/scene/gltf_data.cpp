@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/base64.h"
 #include "core/scene/beside.h"
 #include "core/scene/file_io.h"

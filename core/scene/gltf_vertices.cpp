@@ -7,7 +7,7 @@
 #include <bit>
 #include <span>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "core/device/cpu_tracer.h"
-#include "core/error.h"
-#include "core/interrupted.h"
+#include "core/base/error.h"
+#include "core/base/interrupted.h"
 #include "core/scene/box_triangle.h"
 #include "core/scene/clear_box.h"
 #include "core/scene/leaves_in_box.h"

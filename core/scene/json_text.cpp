@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <set>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/gltf_data.h"
 #include "core/scene/gltf_document.h"
 #include "core/scene/gltf_tree.h"

@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/beside.h"
 #include "core/scene/decimal.h"
 #include "core/scene/load_scene.h"

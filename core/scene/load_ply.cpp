@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/decimal.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/loaders.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/clear_box.h"
 #include "core/scene/contained.h"
 #include "core/scene/place_cells.h"

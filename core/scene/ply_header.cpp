@@ -6,7 +6,7 @@
 #include <array>
 #include <charconv>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

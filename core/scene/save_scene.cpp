@@ -6,7 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/file_io.h"
 #include "core/scene/obj_text.h"
 #include "core/scene/scene.h"

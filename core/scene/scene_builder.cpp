@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/precision_warning.h"
 #include "core/scene/triangle_area.h"
 #include "core/scene/triangulate.h"

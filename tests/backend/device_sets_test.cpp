@@ -4,7 +4,7 @@
 #include "core/device/opencl_scene.h"
 #include "core/device/opencl_set.h"
 #include "core/device/vulkan_set.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "tests/support/vulkan.h"
 
 namespace sightline {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/device/opencl_devices.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/device/make_device.h"
 #include "core/device/vulkan_devices.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gvs/hemicube.h"
 #include "core/scene/generate.h"
 #include "core/shared/vector.h"

@@ -6,7 +6,7 @@
 #include "core/device/cpu_tracer.h"
 #include "core/device/make_device.h"
 #include "core/device/naive_device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gvs/random_segment.h"
 #include "core/scene/generate.h"
 #include "core/shared/random_ray.h"

@@ -5,7 +5,7 @@
 
 #include "core/device/vulkan_commands.h"
 #include "core/device/vulkan_scene.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/generate.h"
 #include "tests/support/vulkan.h"
 

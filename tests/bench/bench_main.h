@@ -5,7 +5,7 @@
 #include <exception>
 #include <functional>
 
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 

@@ -14,7 +14,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/pvs/pvs.h"
 #include "core/pvs/set_codec.h"
 

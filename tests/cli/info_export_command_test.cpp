@@ -6,7 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/cells_file.h"
 #include "core/scene/file_io.h"
 #include "core/scene/load_scene.h"

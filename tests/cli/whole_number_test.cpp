@@ -5,7 +5,7 @@
 #include <fstream>
 #include <random>
 
-#include "core/report/text.h"
+#include "core/base/text.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/cli/run_program.h"

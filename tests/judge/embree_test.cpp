@@ -4,7 +4,7 @@
 #include "core/crosscheck/crosscheck.h"
 #include "core/device/embree_device.h"
 #include "core/device/make_device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "tests/judge/judge_cases.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/crosscheck/crosscheck_report.h"
-#include "core/interrupted.h"
+#include "core/base/interrupted.h"
 #include "tests/judge/wrong_device.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

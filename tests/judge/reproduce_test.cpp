@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "core/crosscheck/crosscheck.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/file_io.h"
 #include "core/scene/load_scene.h"
 #include "tests/judge/judge_cases.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/device/make_device.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/measure/missing_rays.h"
 #include "core/scene/generate.h"
 #include "tests/support/bake_scene.h"

@@ -10,7 +10,7 @@
 #include <set>
 
 #include "core/device/cpu_tracer.h"
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/measure/pixel_error.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

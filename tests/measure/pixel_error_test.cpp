@@ -1,6 +1,6 @@
 // Scenes whose pixel error is known by construction.
 #include "core/device/make_device.h"
-#include "core/interrupted.h"
+#include "core/base/interrupted.h"
 #include "core/measure/pixel_error.h"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <random>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gvs/bake_cell.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

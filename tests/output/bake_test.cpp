@@ -5,8 +5,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/error.h"
-#include "core/interrupted.h"
+#include "core/base/error.h"
+#include "core/base/interrupted.h"
 #include "tests/output/example_pvs.h"
 #include "tests/output/system_calls.h"
 #include "tests/output/version_3_file.h"

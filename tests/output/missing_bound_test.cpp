@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/pvs/portable_math.h"
+#include "core/base/portable_math.h"
 #include "core/pvs/pvs.h"
 
 namespace sightline {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/report/outside_camera.h"
 #include "core/report/shading.h"
 

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "core/report/text.h"
+#include "core/base/text.h"
 #include "tests/output/example_pvs.h"
 
 namespace sightline {

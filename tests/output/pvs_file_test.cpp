@@ -11,7 +11,7 @@
 #include <random>
 #include <thread>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/pvs/set_codec.h"

@@ -9,9 +9,9 @@
 #include <set>
 #include <sstream>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/report/export.h"
-#include "core/report/text.h"
+#include "core/base/text.h"
 #include "tests/output/example_pvs.h"
 
 namespace sightline {

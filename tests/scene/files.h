@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene.h"
 

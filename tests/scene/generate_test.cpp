@@ -8,7 +8,7 @@
 #include <cstring>
 #include <set>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/scene/mesh_builder.h"
 #include "tests/scene/box_overlap.h"
 

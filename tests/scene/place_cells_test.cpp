@@ -1,4 +1,4 @@
-#include "core/interrupted.h"
+#include "core/base/interrupted.h"
 #include "core/scene/place_cells.h"
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <functional>
 #include <set>
 
-#include "core/error.h"
+#include "core/base/error.h"
 #include "core/gvs/bake_cell.h"
 #include "core/scene/cell_frame.h"
 #include "core/scene/contained.h"

@@ -10,7 +10,7 @@
 #include <random>
 
 #include "core/device/host_set.h"
-#include "core/error.h"
+#include "core/base/error.h"
 
 namespace sightline {
 namespace {

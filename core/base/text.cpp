@@ -1,4 +1,4 @@
-#include "core/report/text.h"
+#include "core/base/text.h"
 
 #include <fmt/format.h>
 
