@@ -23,7 +23,7 @@
 #include "core/report/report.h"
 #include "core/base/text.h"
 #include "core/scene/cells_file.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/load_scene.h"
 
 namespace sightline {

@@ -11,7 +11,7 @@
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/report/export.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/obj_text.h"
 #include "core/scene/save_scene.h"

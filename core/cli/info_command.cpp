@@ -10,7 +10,7 @@
 #include "core/report/cell_table.h"
 #include "core/base/text.h"
 #include "core/scene/cells_file.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/load_scene.h"
 
 namespace sightline {

@@ -26,7 +26,7 @@
 #include "core/pvs/pvs_writer.h"
 #include "core/report/status_line.h"
 #include "core/base/text.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/load_scene.h"
 
 namespace sightline {

@@ -5,7 +5,7 @@
 
 #include "core/cli/text_outputs.h"
 #include "core/base/error.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 

@@ -18,7 +18,7 @@
 #include "core/pvs/pvs.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/report/picture.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene.h"
 

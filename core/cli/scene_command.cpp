@@ -11,7 +11,7 @@
 #include "core/cli/overwrite.h"
 #include "core/base/text.h"
 #include "core/scene/cells_file.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/generate.h"
 #include "core/scene/obj_text.h"
 #include "core/scene/save_scene.h"

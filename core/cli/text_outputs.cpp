@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

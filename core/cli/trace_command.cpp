@@ -9,7 +9,7 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/rounding_option.h"
 #include "core/crosscheck/difference.h"
-#include "core/crosscheck/float_text.h"
+#include "core/io/float_text.h"
 #include "core/crosscheck/ray_answers.h"
 #include "core/device/make_device.h"
 #include "core/base/error.h"

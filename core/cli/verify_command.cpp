@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/base/text.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/load_scene.h"
 
 namespace sightline {

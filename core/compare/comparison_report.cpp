@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "core/report/csv.h"
+#include "core/io/csv.h"
 #include "core/report/report_json.h"
 #include "core/base/text.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/crosscheck/float_text.h"
+#include "core/io/float_text.h"
 #include "core/crosscheck/ray_answers.h"
 #include "core/pvs/stage_name.h"
 #include "core/base/text.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "core/crosscheck/difference.h"
-#include "core/crosscheck/float_text.h"
+#include "core/io/float_text.h"
 #include "core/shared/vector.h"
 
 namespace sightline {

@@ -7,11 +7,11 @@
 #include <map>
 
 #include "core/crosscheck/difference.h"
-#include "core/crosscheck/float_text.h"
+#include "core/io/float_text.h"
 #include "core/device/make_device.h"
 #include "core/base/error.h"
 #include "core/judge/seen_triangle.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/shared/vector.h"
 
 namespace sightline {

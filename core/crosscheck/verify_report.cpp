@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "core/crosscheck/float_text.h"
+#include "core/io/float_text.h"
 #include "core/crosscheck/verify.h"
 #include "core/pvs/stage_name.h"
 #include "core/base/text.h"

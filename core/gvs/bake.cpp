@@ -5,7 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
 #include "core/scene/cell_problem.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

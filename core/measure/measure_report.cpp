@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/report/csv.h"
+#include "core/io/csv.h"
 #include "core/base/text.h"
 
 namespace sightline {

@@ -2,7 +2,7 @@
 
 #include <xxhash.h>
 
-#include "core/pvs/byte_stream.h"
+#include "core/io/byte_stream.h"
 
 namespace sightline {
 

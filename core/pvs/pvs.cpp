@@ -8,7 +8,7 @@
 
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/pvs/byte_stream.h"
+#include "core/io/byte_stream.h"
 #include "core/pvs/pvs.h"
 
 // The parts of a .pvs file as docs/pvs-format.md specifies them.

@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/pvs/checksum.h"
 #include "core/pvs/pvs_sections.h"
-#include "core/scene/publish.h"
+#include "core/io/publish.h"
 
 namespace sightline {
 namespace {

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/pvs/byte_stream.h"
+#include "core/io/byte_stream.h"
 #include "core/pvs/pvs.h"
 
 namespace sightline {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/pvs/byte_stream.h"
+#include "core/io/byte_stream.h"
 
 namespace sightline {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/report/outside_camera.h"
-#include "core/report/png.h"
+#include "core/io/png.h"
 #include "core/scene/view_cell.h"
 
 namespace sightline {

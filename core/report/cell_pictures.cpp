@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 

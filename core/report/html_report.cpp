@@ -7,8 +7,8 @@
 #include "core/report/html_chart.h"
 #include "core/report/html_text.h"
 #include "core/report/page/parts.h"
-#include "core/scene/base64.h"
-#include "core/scene/file_io.h"
+#include "core/io/base64.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/report/png.h"
+#include "core/io/png.h"
 
 namespace sightline {
 

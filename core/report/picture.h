@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/pvs/pvs.h"
-#include "core/report/png.h"
+#include "core/io/png.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

@@ -5,8 +5,8 @@
 #include "core/base/error.h"
 #include "core/scene/cells_file.h"
 #include "core/scene/cell_problem.h"
-#include "core/scene/file_io.h"
-#include "core/scene/json_text.h"
+#include "core/io/file_io.h"
+#include "core/io/json_text.h"
 #include "core/scene/view_cell.h"
 
 namespace sightline {

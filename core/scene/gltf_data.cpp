@@ -7,9 +7,9 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/scene/base64.h"
-#include "core/scene/beside.h"
-#include "core/scene/file_io.h"
+#include "core/io/base64.h"
+#include "core/io/beside.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

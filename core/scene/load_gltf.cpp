@@ -11,7 +11,7 @@
 #include "core/scene/gltf_document.h"
 #include "core/scene/gltf_tree.h"
 #include "core/scene/gltf_vertices.h"
-#include "core/scene/json_text.h"
+#include "core/io/json_text.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/loaders.h"
 #include "core/scene/scene_builder.h"

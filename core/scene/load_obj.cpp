@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/scene/beside.h"
-#include "core/scene/decimal.h"
+#include "core/io/beside.h"
+#include "core/io/decimal.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/loaders.h"
 #include "core/scene/mtl_file.h"

@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/scene/decimal.h"
+#include "core/io/decimal.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/loaders.h"
 #include "core/scene/ply_header.h"

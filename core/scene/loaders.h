@@ -1,5 +1,5 @@
 #pragma once
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/load_scene.h"
 
 namespace sightline {

@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/scene/decimal.h"
+#include "core/io/decimal.h"
 #include "core/scene/obj_lines.h"
 
 namespace sightline {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/obj_text.h"
 #include "core/scene/scene.h"
 #include "core/scene/scene_builder.h"

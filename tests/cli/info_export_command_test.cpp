@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/scene/cells_file.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/load_scene.h"
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/cells_file.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/generate.h"
 #include "core/scene/load_scene.h"
 #include "tests/cli/run_program.h"

@@ -1,5 +1,5 @@
 // Floats as text that comes back as the same bits.
-#include "core/crosscheck/float_text.h"
+#include "core/io/float_text.h"
 
 #include <gtest/gtest.h>
 

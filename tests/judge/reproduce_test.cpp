@@ -7,7 +7,7 @@
 
 #include "core/crosscheck/crosscheck.h"
 #include "core/base/error.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 #include "core/scene/load_scene.h"
 #include "tests/judge/judge_cases.h"
 #include "tests/judge/wrong_device.h"

@@ -6,10 +6,10 @@
 #include <regex>
 #include <stdexcept>
 
-#include "core/report/csv.h"
+#include "core/io/csv.h"
 #include "core/report/html_text.h"
 #include "core/report/page/parts.h"
-#include "core/scene/base64.h"
+#include "core/io/base64.h"
 #include "tests/support/example_page.h"
 
 namespace sightline {

@@ -1,4 +1,4 @@
-#include "core/report/png.h"
+#include "core/io/png.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

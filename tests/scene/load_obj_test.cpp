@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/scene/decimal.h"
+#include "core/io/decimal.h"
 #include "core/scene/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/report/html_report.h"
-#include "core/report/png.h"
+#include "core/io/png.h"
 
 namespace sightline::testing_support {
 

@@ -1,4 +1,4 @@
-#include "core/scene/json_text.h"
+#include "core/io/json_text.h"
 
 #include <fmt/format.h>
 

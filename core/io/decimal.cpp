@@ -1,4 +1,4 @@
-#include "core/scene/decimal.h"
+#include "core/io/decimal.h"
 
 #include <bit>
 #include <cfloat>

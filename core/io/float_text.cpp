@@ -1,4 +1,4 @@
-#include "core/crosscheck/float_text.h"
+#include "core/io/float_text.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "core/scene/decimal.h"
+#include "core/io/decimal.h"
 
 namespace sightline {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/scene/publish.h"
+#include "core/io/publish.h"
 
 #include <fcntl.h>
 #include <fmt/core.h>

@@ -1,4 +1,4 @@
-#include "core/scene/json_object.h"
+#include "core/io/json_object.h"
 
 #include <fmt/format.h>
 

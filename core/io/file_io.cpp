@@ -1,4 +1,4 @@
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -9,7 +9,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/scene/publish.h"
+#include "core/io/publish.h"
 
 namespace sightline {
 namespace {

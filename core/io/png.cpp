@@ -1,10 +1,10 @@
-#include "core/report/png.h"
+#include "core/io/png.h"
 
 #include <fmt/format.h>
 #include <png.h>
 
 #include "core/base/error.h"
-#include "core/scene/file_io.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 

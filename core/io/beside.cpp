@@ -1,4 +1,4 @@
-#include "core/scene/beside.h"
+#include "core/io/beside.h"
 
 namespace sightline {
 

@@ -1,4 +1,4 @@
-#include "core/scene/base64.h"
+#include "core/io/base64.h"
 
 namespace sightline {
 namespace {
