@@ -22,9 +22,9 @@
 #include "core/report/progress.h"
 #include "core/report/report.h"
 #include "core/base/text.h"
-#include "core/scene/cells_file.h"
+#include "core/formats/cells_file.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 
 namespace sightline {
 namespace {

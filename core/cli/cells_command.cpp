@@ -21,10 +21,10 @@
 #include "core/base/interrupted.h"
 #include "core/report/status_line.h"
 #include "core/base/text.h"
-#include "core/scene/cells_file.h"
+#include "core/formats/cells_file.h"
 #include "core/scene/clear_box.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/place_cells.h"
 
 namespace sightline {

@@ -19,9 +19,9 @@
 #include "core/base/interrupted.h"
 #include "core/report/status_line.h"
 #include "core/base/text.h"
-#include "core/scene/cells_file.h"
+#include "core/formats/cells_file.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 
 namespace sightline {
 namespace {

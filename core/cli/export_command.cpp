@@ -12,9 +12,9 @@
 #include "core/pvs/pvs_writer.h"
 #include "core/report/export.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
-#include "core/scene/obj_text.h"
-#include "core/scene/save_scene.h"
+#include "core/formats/load_scene.h"
+#include "core/formats/obj_text.h"
+#include "core/formats/save_scene.h"
 
 namespace sightline {
 namespace {

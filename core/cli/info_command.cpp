@@ -9,9 +9,9 @@
 #include "core/pvs/pvs_writer.h"
 #include "core/report/cell_table.h"
 #include "core/base/text.h"
-#include "core/scene/cells_file.h"
+#include "core/formats/cells_file.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 
 namespace sightline {
 namespace {

@@ -27,7 +27,7 @@
 #include "core/report/status_line.h"
 #include "core/base/text.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 
 namespace sightline {
 namespace {

@@ -19,7 +19,7 @@
 #include "core/pvs/pvs_writer.h"
 #include "core/report/picture.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

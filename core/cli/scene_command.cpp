@@ -10,11 +10,11 @@
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
 #include "core/base/text.h"
-#include "core/scene/cells_file.h"
+#include "core/formats/cells_file.h"
 #include "core/io/file_io.h"
 #include "core/scene/generate.h"
-#include "core/scene/obj_text.h"
-#include "core/scene/save_scene.h"
+#include "core/formats/obj_text.h"
+#include "core/formats/save_scene.h"
 
 namespace sightline {
 namespace {

@@ -15,7 +15,7 @@
 #include "core/base/error.h"
 #include "core/report/report.h"
 #include "core/base/text.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "core/shared/ray.h"
 
 namespace sightline {

@@ -14,7 +14,7 @@
 #include "core/pvs/pvs_writer.h"
 #include "core/base/text.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 
 namespace sightline {
 namespace {

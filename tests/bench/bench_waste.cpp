@@ -21,8 +21,8 @@
 #include "core/gvs/make_stage_params.h"
 #include "core/gvs/stage_rays.h"
 #include "core/gvs/thesis_params.h"
-#include "core/scene/cells_file.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/cells_file.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/bench/bench_main.h"
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"
 

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/scene/cells_file.h"
+#include "core/formats/cells_file.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"
 #include "tests/output/version_3_file.h"

@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "core/scene/cells_file.h"
+#include "core/formats/cells_file.h"
 #include "core/io/file_io.h"
 #include "core/scene/generate.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "tests/cli/run_program.h"
 #include "tests/scene/files.h"
 

@@ -6,7 +6,7 @@
 #include <random>
 
 #include "core/base/text.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/cli/run_program.h"
 #include "tests/scene/files.h"

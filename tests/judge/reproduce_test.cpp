@@ -8,7 +8,7 @@
 #include "core/crosscheck/crosscheck.h"
 #include "core/base/error.h"
 #include "core/io/file_io.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "tests/judge/judge_cases.h"
 #include "tests/judge/wrong_device.h"
 #include "tests/support/temporary_folder.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/scene/cells_file.h"
+#include "core/formats/cells_file.h"
 #include "core/scene/view_cell.h"
 #include "tests/scene/files.h"
 

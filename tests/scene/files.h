@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "core/base/error.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 
 namespace sightline::test {

@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include "core/scene/cells_file.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/cells_file.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 #include "core/scene/view_cell.h"
 #include "tests/scene/files.h"

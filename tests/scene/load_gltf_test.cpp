@@ -5,7 +5,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 #include "tests/scene/gltf_files.h"

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "core/io/decimal.h"
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 

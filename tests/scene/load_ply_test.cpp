@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 

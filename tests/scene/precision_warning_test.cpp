@@ -6,8 +6,8 @@
 #include <cstdio>
 
 #include "core/scene/generate.h"
-#include "core/scene/load_scene.h"
-#include "core/scene/save_scene.h"
+#include "core/formats/load_scene.h"
+#include "core/formats/save_scene.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 #include "tests/scene/gltf_files.h"

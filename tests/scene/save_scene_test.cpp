@@ -6,8 +6,8 @@
 #include <csignal>
 #include <random>
 
-#include "core/scene/load_scene.h"
-#include "core/scene/save_scene.h"
+#include "core/formats/load_scene.h"
+#include "core/formats/save_scene.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 

@@ -1,4 +1,4 @@
-#include "core/scene/triangulate.h"
+#include "core/formats/triangulate.h"
 
 #include <gtest/gtest.h>
 

@@ -14,11 +14,11 @@
 #include "core/base/error.h"
 #include "core/io/beside.h"
 #include "core/io/decimal.h"
-#include "core/scene/load_scene.h"
-#include "core/scene/loaders.h"
-#include "core/scene/mtl_file.h"
-#include "core/scene/obj_lines.h"
-#include "core/scene/scene_builder.h"
+#include "core/formats/load_scene.h"
+#include "core/formats/loaders.h"
+#include "core/formats/mtl_file.h"
+#include "core/formats/obj_lines.h"
+#include "core/formats/scene_builder.h"
 
 namespace sightline {
 namespace {

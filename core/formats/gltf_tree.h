@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/gltf_document.h"
+#include "core/formats/gltf_document.h"
 
 namespace sightline {
 

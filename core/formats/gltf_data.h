@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/gltf_document.h"
+#include "core/formats/gltf_document.h"
 
 namespace sightline {
 

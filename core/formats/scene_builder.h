@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

@@ -1,4 +1,4 @@
-#include "core/scene/gltf_tree.h"
+#include "core/formats/gltf_tree.h"
 
 #include <fmt/format.h>
 

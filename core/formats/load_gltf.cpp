@@ -7,14 +7,14 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/scene/gltf_data.h"
-#include "core/scene/gltf_document.h"
-#include "core/scene/gltf_tree.h"
-#include "core/scene/gltf_vertices.h"
+#include "core/formats/gltf_data.h"
+#include "core/formats/gltf_document.h"
+#include "core/formats/gltf_tree.h"
+#include "core/formats/gltf_vertices.h"
 #include "core/io/json_text.h"
-#include "core/scene/load_scene.h"
-#include "core/scene/loaders.h"
-#include "core/scene/scene_builder.h"
+#include "core/formats/load_scene.h"
+#include "core/formats/loaders.h"
+#include "core/formats/scene_builder.h"
 
 namespace sightline {
 namespace {

@@ -2,7 +2,7 @@
 // I. E. Sutherland, R. F. Sproull, R. A. Schumacker, A Characterization of Ten Hidden-Surface Algorithms,
 // 1974) is nearest to. Differences from the textbook: where rounding or crossing edges leave no ear, a
 // corner is cut all the same, so that the number of triangles is always n - 2.
-#include "core/scene/triangulate.h"
+#include "core/formats/triangulate.h"
 
 #include <cmath>
 #include <numeric>

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/scene/gltf_data.h"
+#include "core/formats/gltf_data.h"
 
 namespace sightline {
 namespace {

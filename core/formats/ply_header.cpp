@@ -1,4 +1,4 @@
-#include "core/scene/ply_header.h"
+#include "core/formats/ply_header.h"
 
 #include <fmt/format.h>
 

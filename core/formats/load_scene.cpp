@@ -1,11 +1,11 @@
-#include "core/scene/load_scene.h"
+#include "core/formats/load_scene.h"
 
 #include <fmt/format.h>
 
 #include <map>
 
 #include "core/base/error.h"
-#include "core/scene/loaders.h"
+#include "core/formats/loaders.h"
 
 namespace sightline {
 

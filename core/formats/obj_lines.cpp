@@ -1,4 +1,4 @@
-#include "core/scene/obj_lines.h"
+#include "core/formats/obj_lines.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "core/scene/scene_builder.h"
+#include "core/formats/scene_builder.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/scene/precision_warning.h"
 #include "core/scene/triangle_area.h"
-#include "core/scene/triangulate.h"
+#include "core/formats/triangulate.h"
 
 namespace sightline {
 namespace {

@@ -1,7 +1,7 @@
 // Based on: Khronos Group, glTF 2.0 Specification, 2021; EXT_meshopt_compression. The document is read from
 // JSON here rather than by tinygltf: Debian's version rejects the fallback buffers of
 // EXT_meshopt_compression, reads beyond truncated GLB files and recurses over "extras" without bound.
-#include "core/scene/gltf_document.h"
+#include "core/formats/gltf_document.h"
 
 #include <fmt/format.h>
 

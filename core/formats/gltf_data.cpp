@@ -1,4 +1,4 @@
-#include "core/scene/gltf_data.h"
+#include "core/formats/gltf_data.h"
 
 #include <fmt/format.h>
 #include <meshoptimizer.h>

@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/scene/gltf_data.h"
-#include "core/scene/gltf_document.h"
-#include "core/scene/gltf_tree.h"
-#include "core/scene/scene_builder.h"
+#include "core/formats/gltf_data.h"
+#include "core/formats/gltf_document.h"
+#include "core/formats/gltf_tree.h"
+#include "core/formats/scene_builder.h"
 
 namespace sightline {
 

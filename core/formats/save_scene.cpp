@@ -1,4 +1,4 @@
-#include "core/scene/save_scene.h"
+#include "core/formats/save_scene.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 
 #include "core/base/error.h"
 #include "core/io/file_io.h"
-#include "core/scene/obj_text.h"
+#include "core/formats/obj_text.h"
 #include "core/scene/scene.h"
-#include "core/scene/scene_builder.h"
+#include "core/formats/scene_builder.h"
 
 namespace sightline {
 namespace {

@@ -3,7 +3,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/scene/cells_file.h"
+#include "core/formats/cells_file.h"
 #include "core/scene/cell_problem.h"
 #include "core/io/file_io.h"
 #include "core/io/json_text.h"

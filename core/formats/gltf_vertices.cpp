@@ -1,6 +1,6 @@
 // Based on: Khronos Group, glTF 2.0 Specification, 2021, sections 3.7.2.2 (morph targets) and 3.7.3 (skins).
 // All in double: the matrices of a skin often take a far place away and put it back.
-#include "core/scene/gltf_vertices.h"
+#include "core/formats/gltf_vertices.h"
 
 #include <fmt/format.h>
 

@@ -10,10 +10,10 @@
 
 #include "core/base/error.h"
 #include "core/io/decimal.h"
-#include "core/scene/load_scene.h"
-#include "core/scene/loaders.h"
-#include "core/scene/ply_header.h"
-#include "core/scene/scene_builder.h"
+#include "core/formats/load_scene.h"
+#include "core/formats/loaders.h"
+#include "core/formats/ply_header.h"
+#include "core/formats/scene_builder.h"
 
 namespace sightline {
 namespace {

@@ -1,9 +1,9 @@
-#include "core/scene/mtl_file.h"
+#include "core/formats/mtl_file.h"
 
 #include <optional>
 
 #include "core/io/decimal.h"
-#include "core/scene/obj_lines.h"
+#include "core/formats/obj_lines.h"
 
 namespace sightline {
 namespace {
