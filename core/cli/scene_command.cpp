@@ -12,7 +12,7 @@
 #include "core/base/text.h"
 #include "core/formats/cells_file.h"
 #include "core/io/file_io.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "core/formats/obj_text.h"
 #include "core/formats/save_scene.h"
 

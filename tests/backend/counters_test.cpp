@@ -7,7 +7,7 @@
 #include "core/gvs/face_rays.h"
 #include "core/gvs/make_stage_params.h"
 #include "core/gvs/random_segment.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"
 #include "tests/support/vulkan.h"

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/device/make_device.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"
 
 namespace sightline {

@@ -6,7 +6,7 @@
 #include "core/device/make_device.h"
 #include "core/device/naive_device.h"
 #include "core/base/error.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"
 #include "tests/support/vulkan.h"

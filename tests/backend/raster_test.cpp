@@ -9,7 +9,7 @@
 #include "core/device/vulkan_devices.h"
 #include "core/base/error.h"
 #include "core/gvs/hemicube.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "core/shared/vector.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

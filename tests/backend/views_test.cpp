@@ -5,7 +5,7 @@
 
 #include "core/device/cpu_tracer.h"
 #include "core/device/make_device.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "tests/backend/trace_cases.h"
 #include "tests/support/vulkan.h"
 

@@ -8,7 +8,7 @@
 #include "core/device/naive_device.h"
 #include "core/base/error.h"
 #include "core/gvs/random_segment.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "core/shared/random_ray.h"
 #include "tests/backend/trace_cases.h"
 #include "tests/support/bake_scene.h"

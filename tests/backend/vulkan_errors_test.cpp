@@ -6,7 +6,7 @@
 #include "core/device/vulkan_commands.h"
 #include "core/device/vulkan_scene.h"
 #include "core/base/error.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "tests/support/vulkan.h"
 
 namespace sightline {

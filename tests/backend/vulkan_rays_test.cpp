@@ -9,7 +9,7 @@
 #include "core/device/vulkan_scene.h"
 #include "core/gvs/random_segment.h"
 #include "core/gvs/stage_rays.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/border.h"
 #include "core/shared/random_ray.h"

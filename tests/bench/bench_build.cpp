@@ -21,7 +21,7 @@
 
 #include "bvh/bvh.h"
 #include "core/cli/number_checks.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "tests/bench/bench_main.h"
 #ifdef SL_HAVE_EMBREE
 #include <embree3/rtcore.h>

@@ -9,7 +9,7 @@
 #include "core/device/cpu_tracer.h"
 #include "core/gvs/make_stage_params.h"
 #include "core/gvs/random_segment.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/gvs_border.h"
 #include "core/shared/random_ray.h"

@@ -3,7 +3,7 @@
 
 #include "core/formats/cells_file.h"
 #include "core/io/file_io.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "core/formats/load_scene.h"
 #include "tests/cli/run_program.h"
 #include "tests/scene/files.h"

@@ -6,7 +6,7 @@
 #include "core/device/make_device.h"
 #include "core/base/error.h"
 #include "core/measure/missing_rays.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"
 
 namespace sightline {

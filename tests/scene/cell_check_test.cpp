@@ -8,7 +8,7 @@
 
 #include "core/device/cpu_tracer.h"
 #include "core/scene/contained.h"
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "tests/support/boxes.h"
 
 namespace sightline {

@@ -1,4 +1,4 @@
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -9,7 +9,7 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/scene/mesh_builder.h"
+#include "core/generate/mesh_builder.h"
 #include "tests/scene/box_overlap.h"
 
 namespace sightline {

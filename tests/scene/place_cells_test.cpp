@@ -14,8 +14,8 @@
 #include "core/gvs/bake_cell.h"
 #include "core/scene/cell_frame.h"
 #include "core/scene/contained.h"
-#include "core/scene/generate.h"
-#include "core/scene/mesh_builder.h"
+#include "core/generate/generate.h"
+#include "core/generate/mesh_builder.h"
 #include "tests/scene/box_overlap.h"
 
 namespace sightline {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/save_scene.h"
 #include "core/scene/scene.h"

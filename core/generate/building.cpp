@@ -1,8 +1,8 @@
-#include "core/scene/building.h"
+#include "core/generate/building.h"
 
 #include <algorithm>
 
-#include "core/scene/generator_random.h"
+#include "core/generate/generator_random.h"
 
 namespace sightline {
 namespace {

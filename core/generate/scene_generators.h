@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/scene_parts.h"
+#include "core/generate/scene_parts.h"
 #include "core/scene/view_cell.h"
 
 namespace sightline {

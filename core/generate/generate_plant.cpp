@@ -9,9 +9,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/scene/plant_pipes.h"
-#include "core/scene/plant_units.h"
-#include "core/scene/scene_generators.h"
+#include "core/generate/plant_pipes.h"
+#include "core/generate/plant_units.h"
+#include "core/generate/scene_generators.h"
 
 namespace sightline {
 namespace {

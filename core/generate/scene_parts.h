@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/scene/mesh_builder.h"
+#include "core/generate/mesh_builder.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

@@ -1,10 +1,10 @@
-#include "core/scene/plant_units.h"
+#include "core/generate/plant_units.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "core/scene/generator_random.h"
+#include "core/generate/generator_random.h"
 
 namespace sightline {
 namespace {

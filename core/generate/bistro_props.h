@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "core/scene/mesh_builder.h"
+#include "core/generate/mesh_builder.h"
 
 namespace sightline {
 

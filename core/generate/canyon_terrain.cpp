@@ -1,10 +1,10 @@
-#include "core/scene/canyon_terrain.h"
+#include "core/generate/canyon_terrain.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/scene/generator_random.h"
-#include "core/scene/noise.h"
+#include "core/generate/generator_random.h"
+#include "core/generate/noise.h"
 
 namespace sightline {
 namespace {

@@ -1,10 +1,10 @@
-#include "core/scene/street_props.h"
+#include "core/generate/street_props.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "core/scene/generator_random.h"
+#include "core/generate/generator_random.h"
 
 namespace sightline {
 namespace {

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/scene/generator_random.h"
-#include "core/scene/mesh_builder.h"
+#include "core/generate/generator_random.h"
+#include "core/generate/mesh_builder.h"
 
 namespace sightline {
 

@@ -1,10 +1,10 @@
 // Based on: Perlin, An Image Synthesizer, SIGGRAPH 1985, and the quintic of Improving Noise, SIGGRAPH 2002;
 // with values instead of gradients at the lattice.
-#include "core/scene/noise.h"
+#include "core/generate/noise.h"
 
 #include <cmath>
 
-#include "core/scene/generator_random.h"
+#include "core/generate/generator_random.h"
 
 namespace sightline {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <memory>
 
-#include "core/scene/canyon_terrain.h"
-#include "core/scene/generator_random.h"
-#include "core/scene/rocks.h"
+#include "core/generate/canyon_terrain.h"
+#include "core/generate/generator_random.h"
+#include "core/generate/rocks.h"
 #include "core/scene/rotation.h"
-#include "core/scene/scene_generators.h"
+#include "core/generate/scene_generators.h"
 
 namespace sightline {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/scene/scene_parts.h"
+#include "core/generate/scene_parts.h"
 
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "core/scene/generator_random.h"
+#include "core/generate/generator_random.h"
 
 namespace sightline {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/scene/mesh_builder.h"
+#include "core/generate/mesh_builder.h"
 
 #include <array>
 #include <cmath>

@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/scene/bistro_props.h"
-#include "core/scene/building.h"
-#include "core/scene/generator_random.h"
-#include "core/scene/scene_generators.h"
-#include "core/scene/street_props.h"
+#include "core/generate/bistro_props.h"
+#include "core/generate/building.h"
+#include "core/generate/generator_random.h"
+#include "core/generate/scene_generators.h"
+#include "core/generate/street_props.h"
 
 namespace sightline {
 namespace {

@@ -1,7 +1,7 @@
-#include "core/scene/generate.h"
+#include "core/generate/generate.h"
 
 #include "core/base/error.h"
-#include "core/scene/scene_generators.h"
+#include "core/generate/scene_generators.h"
 
 namespace sightline {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/scene/plant_pipes.h"
+#include "core/generate/plant_pipes.h"
 
 #include <algorithm>
 #include <cmath>
