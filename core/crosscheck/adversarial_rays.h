@@ -2,7 +2,7 @@
 #include <span>
 
 #include "core/crosscheck/ray_kinds.h"
-#include "core/crosscheck/ray_random.h"
+#include "core/sampling/ray_random.h"
 
 namespace sightline {
 

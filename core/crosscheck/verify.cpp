@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/crosscheck/ray_random.h"
+#include "core/sampling/ray_random.h"
 #include "core/judge/seen_triangle.h"
 #include "core/scene/contained.h"
 

@@ -15,8 +15,8 @@
 #include "core/device/cpu_tracer.h"
 #include "core/device/host_set.h"
 #include "core/base/error.h"
-#include "core/gvs/random_segment.h"
-#include "core/gvs/stage_rays.h"
+#include "core/sampling/random_segment.h"
+#include "core/sampling/stage_rays.h"
 
 namespace sightline {
 namespace {

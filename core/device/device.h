@@ -76,7 +76,7 @@ class Device {
   /// Whether rasterize works here; if not, why in one line.
   virtual std::string whyNoRaster() const { return "only Vulkan devices rasterise"; }
 
-  /// Draws a hemicube (hemicubeAt, core/gvs/hemicube.h) of resolution * resolution pixels an image, and
+  /// Draws a hemicube (hemicubeAt, core/sampling/hemicube.h) of resolution * resolution pixels an image, and
   /// inserts the triangle that each of its hemicubeSamples shows under that sample's index: a batch's
   /// hemicubes have consecutive indices, and one resolution. Counts samples as rays. near_distance:
   /// hemicubeNear. A batch is either traced or rasterised. Throws Error where whyNoRaster says something.

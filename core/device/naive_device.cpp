@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "core/gvs/random_segment.h"
-#include "core/gvs/stage_rays.h"
+#include "core/sampling/random_segment.h"
+#include "core/sampling/stage_rays.h"
 #include "core/shared/set.h"
 
 namespace sightline {

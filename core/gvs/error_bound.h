@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/measure/views.h"
+#include "core/sampling/views.h"
 
 namespace sightline {
 

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "core/gvs/stage_rays.h"
+#include "core/sampling/stage_rays.h"
 
 namespace sightline {
 

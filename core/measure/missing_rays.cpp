@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/gvs/face_rays.h"
+#include "core/sampling/face_rays.h"
 #include "core/shared/random_ray.h"
 
 namespace sightline {

@@ -7,7 +7,7 @@
 
 #include "core/device/device.h"
 #include "core/measure/ranked_set.h"
-#include "core/measure/views.h"
+#include "core/sampling/views.h"
 
 // The pixel error (S. Nirenstein and E. Blake 2004; thesis 7.1): images seen from the cell, in which a pixel
 // is wrong if it shows a triangle that is not in the cell's set.

@@ -28,7 +28,7 @@ SL_FUNC bool isGvs(StageParams params) {
 
 /// A run of random rays from one face: the points first .. first + count - 1 of the Halton sequence. Work
 /// items do not walk the sequence itself but its strata, so that neighbouring items trace coherent rays: see
-/// random_ray.h. Filled by makeRandomSegment (core/gvs/random_segment.h).
+/// random_ray.h. Filled by makeRandomSegment (core/sampling/random_segment.h).
 SL_STRUCT(RandomSegment) {
   uvec4 range;         ///< x: face, y: low and z: high half of first, w: count
   uvec4 batch;         ///< x: index of the first ray in its batch (1 or more), y: number of strata M,

@@ -4,9 +4,9 @@
 
 #include "core/device/make_device.h"
 #include "core/device/naive_device.h"
-#include "core/gvs/face_rays.h"
-#include "core/gvs/make_stage_params.h"
-#include "core/gvs/random_segment.h"
+#include "core/sampling/face_rays.h"
+#include "core/sampling/make_stage_params.h"
+#include "core/sampling/random_segment.h"
 #include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

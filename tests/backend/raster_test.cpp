@@ -8,7 +8,7 @@
 #include "core/device/make_device.h"
 #include "core/device/vulkan_devices.h"
 #include "core/base/error.h"
-#include "core/gvs/hemicube.h"
+#include "core/sampling/hemicube.h"
 #include "core/generate/generate.h"
 #include "core/shared/vector.h"
 #include "tests/support/bake_scene.h"

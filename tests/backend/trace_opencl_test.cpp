@@ -4,7 +4,7 @@
 #include "core/device/cpu_tracer.h"
 #include "core/device/opencl_scene.h"
 #include "core/base/error.h"
-#include "core/gvs/random_segment.h"
+#include "core/sampling/random_segment.h"
 #include "core/shared/random_ray.h"
 #include "tests/backend/trace_cases.h"
 

@@ -7,7 +7,7 @@
 #include "core/device/make_device.h"
 #include "core/device/naive_device.h"
 #include "core/base/error.h"
-#include "core/gvs/random_segment.h"
+#include "core/sampling/random_segment.h"
 #include "core/generate/generate.h"
 #include "core/shared/random_ray.h"
 #include "tests/backend/trace_cases.h"

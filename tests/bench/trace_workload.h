@@ -7,8 +7,8 @@
 
 #include "bvh/bvh.h"
 #include "core/device/cpu_tracer.h"
-#include "core/gvs/make_stage_params.h"
-#include "core/gvs/random_segment.h"
+#include "core/sampling/make_stage_params.h"
+#include "core/sampling/random_segment.h"
 #include "core/generate/generate.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/gvs_border.h"

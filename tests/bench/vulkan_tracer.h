@@ -5,7 +5,7 @@
 
 #include "core/device/vulkan_runner.h"
 #include "core/device/vulkan_scene.h"
-#include "core/gvs/random_segment.h"
+#include "core/sampling/random_segment.h"
 
 namespace sightline {
 

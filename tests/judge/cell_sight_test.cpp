@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/gvs/make_stage_params.h"
+#include "core/sampling/make_stage_params.h"
 #include "core/shared/random_ray.h"
 #include "core/shared/reverse.h"
 #include "tests/judge/judge_cases.h"

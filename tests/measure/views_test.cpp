@@ -1,5 +1,5 @@
 // Where the pixel error looks from and to.
-#include "core/measure/views.h"
+#include "core/sampling/views.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/gvs/hemicube.h"
+#include "core/sampling/hemicube.h"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "core/gvs/random_segment.h"
+#include "core/sampling/random_segment.h"
 
 namespace sightline {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/gvs/face_rays.h"
+#include "core/sampling/face_rays.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "core/gvs/random_segment.h"
+#include "core/sampling/random_segment.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "core/measure/views.h"
+#include "core/sampling/views.h"
 
 #include <algorithm>
 #include <cmath>
