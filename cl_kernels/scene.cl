@@ -13,13 +13,13 @@ typedef struct BvhNode2 {
 } BvhNode2;
 
 #if SL_PACKET > 1
-/// TriangleRecord of core/device/trace_layout.h.
+/// TriangleRecord of core/trace/trace_layout.h.
 typedef struct TriangleRecord {
   float vertices[9];
   uint id;
 } TriangleRecord;
 #else
-/// TriangleRecordGpu of core/device/trace_layout.h.
+/// TriangleRecordGpu of core/trace/trace_layout.h.
 typedef struct TriangleRecord {
   float4 v0;  // w: bits of the id
   float4 v1;

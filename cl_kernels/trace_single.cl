@@ -23,7 +23,7 @@ static inline void intersectRecord(__global const TriangleRecord* record, Sheare
 }
 
 /// Where a walk goes on: an inner node by its index, or a leaf: the bit, its references less one (3 bits), the
-/// first of them (28 bits; kMostGpuReferences of core/device/trace_layout.h).
+/// first of them (28 bits; kMostGpuReferences of core/trace/trace_layout.h).
 #define SL_LEAF 0x80000000u
 #define SL_NO_LEAF 0u
 #define SL_WALK_END 0xffffffffu

@@ -10,7 +10,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/device/make_device.h"
 #include "core/device/naive_device.h"
 #include "core/base/error.h"

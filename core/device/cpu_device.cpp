@@ -12,7 +12,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/device/host_set.h"
 #include "core/base/error.h"
 #include "core/sampling/random_segment.h"

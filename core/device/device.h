@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bvh/bvh.h"
-#include "core/device/device_info.h"
+#include "core/trace/device_info.h"
 #include "core/scene/scene.h"
 #include "core/shared/stage_params.h"
 #include "core/shared/types.h"

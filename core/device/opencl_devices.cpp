@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "core/device/select_device.h"
+#include "core/trace/select_device.h"
 #include "core/base/error.h"
 
 namespace sightline {

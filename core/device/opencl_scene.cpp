@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/device/trace_layout.h"
+#include "core/trace/trace_layout.h"
 #include "core/shared/box.h"
 
 namespace sightline {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "core/device/trace_layout.h"
+#include "core/trace/trace_layout.h"
 
 namespace sightline {
 namespace {

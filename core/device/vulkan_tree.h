@@ -1,5 +1,5 @@
 #pragma once
-#include "core/device/leaf_parts.h"
+#include "core/trace/leaf_parts.h"
 #include "core/device/vulkan_commands.h"
 
 namespace sightline {

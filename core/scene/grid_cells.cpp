@@ -6,7 +6,7 @@
 #include <glm/gtc/type_precision.hpp>
 #include <string>
 
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
 #include "core/scene/box_triangle.h"

@@ -13,7 +13,7 @@
 #include <iterator>
 
 #include "bvh/bvh.h"
-#include "core/device/trace_layout.h"
+#include "core/trace/trace_layout.h"
 #include "core/device/vulkan_runner.h"
 #include "core/shared/border.h"
 #include "core/shared/reverse.h"

@@ -1,7 +1,7 @@
 // The software traversal against the triangle test alone, applied to every triangle.
 #include <gtest/gtest.h>
 
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "tests/backend/trace_cases.h"
 
 namespace sightline {

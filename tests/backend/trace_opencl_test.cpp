@@ -1,7 +1,7 @@
 // OpenCL's hits, bit by bit those of the reference.
 #include <gtest/gtest.h>
 
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/device/opencl_scene.h"
 #include "core/base/error.h"
 #include "core/sampling/random_segment.h"

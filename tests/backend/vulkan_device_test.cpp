@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/device/make_device.h"
 #include "core/device/naive_device.h"
 #include "core/base/error.h"

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/device/vulkan_runner.h"
 #include "core/device/vulkan_scene.h"
 #include "core/sampling/random_segment.h"

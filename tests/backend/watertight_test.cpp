@@ -8,7 +8,7 @@
 #include <map>
 #include <numbers>
 
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/device/opencl_scene.h"
 #include "tests/backend/trace_cases.h"
 

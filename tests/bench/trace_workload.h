@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bvh/bvh.h"
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/sampling/make_stage_params.h"
 #include "core/sampling/random_segment.h"
 #include "core/generate/generate.h"

@@ -9,7 +9,7 @@
 #include <random>
 #include <set>
 
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/base/error.h"
 #include "core/measure/pixel_error.h"
 #include "tests/support/bake_scene.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 #include "core/scene/contained.h"
 #include "core/generate/generate.h"
 #include "tests/support/boxes.h"

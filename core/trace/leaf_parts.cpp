@@ -1,4 +1,4 @@
-#include "core/device/leaf_parts.h"
+#include "core/trace/leaf_parts.h"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "core/device/trace_layout.h"
+#include "core/trace/trace_layout.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

@@ -1,4 +1,4 @@
-#include "core/device/cpu_tracer.h"
+#include "core/trace/cpu_tracer.h"
 
 #include <cmath>
 

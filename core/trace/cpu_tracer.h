@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "bvh/bvh.h"
-#include "core/device/trace_layout.h"
+#include "core/trace/trace_layout.h"
 #include "core/scene/scene.h"
 #include "core/shared/types.h"
 
