@@ -4,7 +4,7 @@
 
 #include "core/device/cpu_device.h"
 #include "core/device/embree_device.h"
-#include "core/device/opencl_context.h"
+#include "core/opencl/opencl_context.h"
 #include "core/device/opencl_device.h"
 #include "core/device/vulkan_device.h"
 #include "core/device/vulkan_devices.h"

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "core/device/opencl_context.h"
+#include "core/opencl/opencl_context.h"
 #include "core/device/opencl_scene.h"
 #include "core/device/opencl_set.h"
 #include "core/sampling/random_segment.h"

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "bvh/bvh.h"
-#include "core/device/opencl_context.h"
+#include "core/opencl/opencl_context.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "core/device/opencl_context.h"
+#include "core/opencl/opencl_context.h"
 
 namespace sightline {
 

@@ -1,9 +1,9 @@
 // Choosing devices, and what is said when something does not fit.
-#include "core/device/opencl_context.h"
+#include "core/opencl/opencl_context.h"
 
 #include <gtest/gtest.h>
 
-#include "core/device/opencl_devices.h"
+#include "core/opencl/opencl_devices.h"
 #include "core/base/error.h"
 
 namespace sightline {

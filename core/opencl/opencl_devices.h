@@ -1,6 +1,6 @@
 #pragma once
 // Which OpenCL devices there are; used by opencl_context.cpp.
-#include "core/device/opencl_context.h"
+#include "core/opencl/opencl_context.h"
 
 namespace sightline {
 

@@ -1,4 +1,4 @@
-#include "core/device/opencl_devices.h"
+#include "core/opencl/opencl_devices.h"
 
 #include <fmt/format.h>
 #include <pwd.h>

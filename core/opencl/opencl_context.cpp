@@ -1,11 +1,11 @@
-#include "core/device/opencl_context.h"
+#include "core/opencl/opencl_context.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "cl_kernels/program_source.h"
-#include "core/device/opencl_devices.h"
+#include "core/opencl/opencl_devices.h"
 #include "core/base/parallel_copy.h"
 #include "core/base/error.h"
 
