@@ -7,7 +7,7 @@
 #include "core/opencl/opencl_context.h"
 #include "core/device/opencl_device.h"
 #include "core/device/vulkan_device.h"
-#include "core/device/vulkan_devices.h"
+#include "core/vulkan/vulkan_devices.h"
 #include "core/base/error.h"
 
 namespace sightline {

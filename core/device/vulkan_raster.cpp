@@ -6,7 +6,7 @@
 #include <iterator>
 #include <vector>
 
-#include "core/device/vulkan_stage.h"
+#include "core/vulkan/vulkan_stage.h"
 #include "core/base/error.h"
 
 namespace sightline {

@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-#include "core/device/vulkan_image.h"
+#include "core/vulkan/vulkan_image.h"
 #include "core/device/vulkan_runner.h"
 #include "core/shared/hemicube.h"
 

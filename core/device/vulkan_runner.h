@@ -1,7 +1,7 @@
 #pragma once
 #include <cstdint>
 
-#include "core/device/vulkan_commands.h"
+#include "core/vulkan/vulkan_commands.h"
 #include "vk_shaders/launch.h"
 
 namespace sightline {

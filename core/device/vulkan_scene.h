@@ -1,5 +1,5 @@
 #pragma once
-#include "core/device/vulkan_tree.h"
+#include "core/vulkan/vulkan_tree.h"
 #include "core/scene/scene.h"
 #include "vk_shaders/launch.h"
 

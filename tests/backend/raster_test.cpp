@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "core/device/make_device.h"
-#include "core/device/vulkan_devices.h"
+#include "core/vulkan/vulkan_devices.h"
 #include "core/base/error.h"
 #include "core/sampling/hemicube.h"
 #include "core/generate/generate.h"

@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "core/device/vulkan_commands.h"
+#include "core/vulkan/vulkan_commands.h"
 #include "core/device/vulkan_scene.h"
 #include "core/base/error.h"
 #include "core/generate/generate.h"

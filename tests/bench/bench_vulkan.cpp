@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/cli/number_checks.h"
-#include "core/device/vulkan_commands.h"
+#include "core/vulkan/vulkan_commands.h"
 #include "tests/bench/bench_main.h"
 
 namespace sightline {

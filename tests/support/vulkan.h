@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "core/device/vulkan_devices.h"
+#include "core/vulkan/vulkan_devices.h"
 
 namespace sightline::testing_support {
 

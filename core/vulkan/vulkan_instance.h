@@ -1,5 +1,5 @@
 #pragma once
-#include "core/device/vulkan_api.h"
+#include "core/vulkan/vulkan_api.h"
 
 namespace sightline {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/device/vulkan_devices.h"
+#include "core/vulkan/vulkan_devices.h"
 
 namespace sightline {
 

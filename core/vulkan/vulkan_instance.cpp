@@ -1,4 +1,4 @@
-#include "core/device/vulkan_instance.h"
+#include "core/vulkan/vulkan_instance.h"
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "core/device/vulkan_devices.h"
+#include "core/vulkan/vulkan_devices.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "core/device/vulkan_context.h"
+#include "core/vulkan/vulkan_context.h"
 
 namespace sightline {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/device/device.h"
-#include "core/device/vulkan_instance.h"
+#include "core/vulkan/vulkan_instance.h"
 
 namespace sightline {
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/device/vulkan_context.h"
+#include "core/vulkan/vulkan_context.h"
 
 namespace sightline {
 

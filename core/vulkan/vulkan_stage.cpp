@@ -1,9 +1,9 @@
-#include "core/device/vulkan_stage.h"
+#include "core/vulkan/vulkan_stage.h"
 
 #include <algorithm>
 #include <cstring>
 
-#include "core/device/vulkan_commands.h"
+#include "core/vulkan/vulkan_commands.h"
 #include "vk_shaders/shaders.h"
 
 namespace sightline {

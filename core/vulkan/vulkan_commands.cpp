@@ -1,4 +1,4 @@
-#include "core/device/vulkan_commands.h"
+#include "core/vulkan/vulkan_commands.h"
 
 #include <cstring>
 

@@ -1,4 +1,4 @@
-#include "core/device/vulkan_image.h"
+#include "core/vulkan/vulkan_image.h"
 
 namespace sightline {
 

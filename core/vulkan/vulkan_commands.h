@@ -1,8 +1,8 @@
 #pragma once
 #include <algorithm>
 
-#include "core/device/vulkan_context.h"
-#include "core/device/vulkan_stage.h"
+#include "core/vulkan/vulkan_context.h"
+#include "core/vulkan/vulkan_stage.h"
 
 namespace sightline {
 

@@ -1,4 +1,4 @@
-#include "core/device/vulkan_context.h"
+#include "core/vulkan/vulkan_context.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "core/device/vulkan_tree.h"
+#include "core/vulkan/vulkan_tree.h"
 
 #include <algorithm>
 #include <chrono>

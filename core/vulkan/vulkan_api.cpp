@@ -1,4 +1,4 @@
-#include "core/device/vulkan_api.h"
+#include "core/vulkan/vulkan_api.h"
 
 #include <dlfcn.h>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 #pragma once
 #include "core/trace/leaf_parts.h"
-#include "core/device/vulkan_commands.h"
+#include "core/vulkan/vulkan_commands.h"
 
 namespace sightline {
 
