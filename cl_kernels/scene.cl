@@ -34,7 +34,7 @@ typedef struct SceneRef {
 } SceneRef;
 
 /// Parameters of a kernel that traces, and the SceneRef made of them. The host passes, in this order, the
-/// node buffer, the triangle buffer and the reach (core/device/opencl_scene.h).
+/// node buffer, the triangle buffer and the reach (core/device/opencl/opencl_scene.h).
 #define SL_SCENE_ARGS                                                                                     \
   __global const BvhNode2 *restrict scene_nodes, __global const TriangleRecord *restrict scene_triangles, \
       float scene_reach

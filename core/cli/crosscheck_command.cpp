@@ -17,7 +17,7 @@
 #include "core/crosscheck/place.h"
 #include "core/crosscheck/pvs_difference.h"
 #include "core/crosscheck/reproduce.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
 #include "core/report/status_line.h"

@@ -5,7 +5,7 @@
 
 #include "core/cli/nearest.h"
 #include "core/device/device.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 
 namespace sightline {
 

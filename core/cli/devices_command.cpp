@@ -2,7 +2,7 @@
 
 #include "core/cli/commands.h"
 #include "core/device/device.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 
 namespace sightline {
 namespace {

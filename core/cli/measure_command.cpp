@@ -16,7 +16,7 @@
 #include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/base/error.h"
 #include "core/gvs/bake_cell.h"
 #include "core/base/interrupted.h"

@@ -12,7 +12,7 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/device/device.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/base/error.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs.h"

@@ -11,7 +11,7 @@
 #include "core/crosscheck/difference.h"
 #include "core/io/float_text.h"
 #include "core/crosscheck/ray_answers.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/base/error.h"
 #include "core/report/report.h"
 #include "core/base/text.h"

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "core/device/cpu_device.h"
+#include "core/device/cpu/cpu_device.h"
 #include "core/device/trace_only_device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/base/interrupted.h"

@@ -8,7 +8,7 @@
 
 #include "core/crosscheck/difference.h"
 #include "core/io/float_text.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/base/error.h"
 #include "core/judge/seen_triangle.h"
 #include "core/io/file_io.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "core/device/naive_device.h"
+#include "core/device/naive/naive_device.h"
 #include "core/base/error.h"
 #include "core/gvs/error_bound.h"
 #include "core/gvs/exploration_yield.h"

@@ -33,7 +33,7 @@ void requireMethodOn(Method method, const std::string& device);
 /// Computes the PVS of one cell by params.method on `device`, which holds `scene`: by default GVS++ (Koch and
 /// Wimmer 2021; thesis, algorithms 5.1 and 6.1 to 6.4). cell_index numbers the cell in its bake: it enters
 /// the random shifts only. The naive method is gvs++ on a device of makeNaiveDevice
-/// (core/device/naive_device.h), and an Error on any other. Throws Error, Interrupted.
+/// (core/device/naive/naive_device.h), and an Error on any other. Throws Error, Interrupted.
 CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint32_t cell_index,
                  const BakeParams& params, const BakeHooks& hooks = {});
 

@@ -2,8 +2,8 @@
 // direction is none.
 #include <gtest/gtest.h>
 
-#include "core/device/make_device.h"
-#include "core/device/naive_device.h"
+#include "core/device/registry/make_device.h"
+#include "core/device/naive/naive_device.h"
 #include "core/sampling/face_rays.h"
 #include "core/sampling/make_stage_params.h"
 #include "core/sampling/random_segment.h"

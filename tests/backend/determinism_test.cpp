@@ -1,7 +1,7 @@
 // The same PVS with the same witnesses, bit for bit, however it is computed.
 #include <gtest/gtest.h>
 
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"
 

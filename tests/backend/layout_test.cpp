@@ -14,7 +14,7 @@
 
 #include "bvh/bvh.h"
 #include "core/trace/trace_layout.h"
-#include "core/device/vulkan_runner.h"
+#include "core/device/vulkan/vulkan_runner.h"
 #include "core/shared/border.h"
 #include "core/shared/reverse.h"
 #include "core/shared/view_ray.h"

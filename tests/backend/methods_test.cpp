@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "core/device/make_device.h"
-#include "core/device/naive_device.h"
+#include "core/device/registry/make_device.h"
+#include "core/device/naive/naive_device.h"
 #include "core/base/error.h"
 #include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/vulkan/vulkan_devices.h"
 #include "core/base/error.h"
 #include "core/sampling/hemicube.h"

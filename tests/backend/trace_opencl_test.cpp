@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/trace/cpu_tracer.h"
-#include "core/device/opencl_scene.h"
+#include "core/device/opencl/opencl_scene.h"
 #include "core/base/error.h"
 #include "core/sampling/random_segment.h"
 #include "core/shared/random_ray.h"

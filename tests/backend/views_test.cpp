@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/trace/cpu_tracer.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
 #include "tests/backend/trace_cases.h"
 #include "tests/support/vulkan.h"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/trace/cpu_tracer.h"
-#include "core/device/make_device.h"
-#include "core/device/naive_device.h"
+#include "core/device/registry/make_device.h"
+#include "core/device/naive/naive_device.h"
 #include "core/base/error.h"
 #include "core/sampling/random_segment.h"
 #include "core/generate/generate.h"

@@ -4,7 +4,7 @@
 #include <cstdlib>
 
 #include "core/vulkan/vulkan_commands.h"
-#include "core/device/vulkan_scene.h"
+#include "core/device/vulkan/vulkan_scene.h"
 #include "core/base/error.h"
 #include "core/generate/generate.h"
 #include "tests/support/vulkan.h"

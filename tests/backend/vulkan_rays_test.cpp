@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "core/trace/cpu_tracer.h"
-#include "core/device/vulkan_runner.h"
-#include "core/device/vulkan_scene.h"
+#include "core/device/vulkan/vulkan_runner.h"
+#include "core/device/vulkan/vulkan_scene.h"
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
 #include "core/generate/generate.h"

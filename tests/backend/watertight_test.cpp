@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "core/trace/cpu_tracer.h"
-#include "core/device/opencl_scene.h"
+#include "core/device/opencl/opencl_scene.h"
 #include "tests/backend/trace_cases.h"
 
 namespace sightline {

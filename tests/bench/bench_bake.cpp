@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/cli/number_checks.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"

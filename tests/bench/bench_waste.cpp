@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/cli/number_checks.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/sampling/face_rays.h"
 #include "core/sampling/make_stage_params.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/device/opencl_scene.h"
+#include "core/device/opencl/opencl_scene.h"
 #include "tests/bench/trace_workload.h"
 #include "tests/bench/vulkan_tracer.h"
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "core/device/vulkan_runner.h"
-#include "core/device/vulkan_scene.h"
+#include "core/device/vulkan/vulkan_runner.h"
+#include "core/device/vulkan/vulkan_scene.h"
 #include "core/sampling/random_segment.h"
 
 namespace sightline {

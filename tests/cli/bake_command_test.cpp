@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "core/device/device.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/gvs/algorithm_revision.h"
 #include "core/pvs/pvs_writer.h"
 #include "tests/cli/run_program.h"

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "core/device/embree_device.h"
+#include "core/device/embree/embree_device.h"
 #include "tests/cli/run_program.h"
 #include "tests/support/temporary_folder.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/crosscheck/crosscheck.h"
 #include "core/crosscheck/verify.h"
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/device/trace_only_device.h"
 #include "core/gvs/bake_cell.h"
 #include "tests/hard/hard_cases.h"

@@ -4,8 +4,8 @@
 
 #include <bit>
 
-#include "core/device/embree_device.h"
-#include "core/device/make_device.h"
+#include "core/device/embree/embree_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/judge/ruling.h"
 
 namespace sightline {

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/crosscheck/crosscheck.h"
-#include "core/device/embree_device.h"
-#include "core/device/make_device.h"
+#include "core/device/embree/embree_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/base/error.h"
 #include "tests/judge/judge_cases.h"
 #include "tests/support/bake_scene.h"

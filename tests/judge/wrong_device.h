@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/device/cpu_device.h"
+#include "core/device/cpu/cpu_device.h"
 #include "tests/support/forwarding_device.h"
 
 namespace sightline::judge_test {

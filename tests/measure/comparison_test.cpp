@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/base/error.h"
 #include "core/measure/missing_rays.h"
 #include "core/generate/generate.h"

@@ -1,5 +1,5 @@
 // The promise of --target-error, and the rays it stands on.
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/gvs/error_bound.h"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Scenes whose pixel error is known by construction.
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/base/interrupted.h"
 #include "core/measure/pixel_error.h"
 

@@ -2,7 +2,7 @@
 #include <memory>
 #include <string>
 
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/gvs/bake_cell.h"
 
 namespace sightline::testing_support {

@@ -9,7 +9,7 @@
 #include <map>
 #include <random>
 
-#include "core/device/host_set.h"
+#include "core/device/cpu/host_set.h"
 #include "core/base/error.h"
 
 namespace sightline {

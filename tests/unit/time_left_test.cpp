@@ -1,7 +1,7 @@
 // What a bake says about the time it still takes.
 #include <gtest/gtest.h>
 
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"
 

@@ -1,12 +1,12 @@
-#include "core/device/opencl_device.h"
+#include "core/device/opencl/opencl_device.h"
 
 #include <algorithm>
 #include <numeric>
 #include <utility>
 
 #include "core/opencl/opencl_context.h"
-#include "core/device/opencl_scene.h"
-#include "core/device/opencl_set.h"
+#include "core/device/opencl/opencl_scene.h"
+#include "core/device/opencl/opencl_set.h"
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
 #include "core/shared/border.h"

@@ -2,7 +2,7 @@
 #include <array>
 
 #include "core/vulkan/vulkan_image.h"
-#include "core/device/vulkan_runner.h"
+#include "core/device/vulkan/vulkan_runner.h"
 #include "core/shared/hemicube.h"
 
 namespace sightline {

@@ -1,4 +1,4 @@
-#include "core/device/vulkan_raster.h"
+#include "core/device/vulkan/vulkan_raster.h"
 
 #include <fmt/format.h>
 

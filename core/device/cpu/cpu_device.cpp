@@ -1,4 +1,4 @@
-#include "core/device/cpu_device.h"
+#include "core/device/cpu/cpu_device.h"
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "core/trace/cpu_tracer.h"
-#include "core/device/host_set.h"
+#include "core/device/cpu/host_set.h"
 #include "core/base/error.h"
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"

@@ -1,4 +1,4 @@
-#include "core/device/embree_device.h"
+#include "core/device/embree/embree_device.h"
 
 #ifdef SL_HAVE_EMBREE
 #include <embree3/rtcore.h>

@@ -1,4 +1,4 @@
-#include "core/device/opencl_set.h"
+#include "core/device/opencl/opencl_set.h"
 
 #include "core/device/hash_capacity.h"
 #include "core/shared/set.h"

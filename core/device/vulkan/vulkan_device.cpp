@@ -1,13 +1,13 @@
-#include "core/device/vulkan_device.h"
+#include "core/device/vulkan/vulkan_device.h"
 
 #include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "core/base/parallel_copy.h"
-#include "core/device/vulkan_raster.h"
-#include "core/device/vulkan_scene.h"
-#include "core/device/vulkan_set.h"
+#include "core/device/vulkan/vulkan_raster.h"
+#include "core/device/vulkan/vulkan_scene.h"
+#include "core/device/vulkan/vulkan_set.h"
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
 #include "core/shared/border.h"

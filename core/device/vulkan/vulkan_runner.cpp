@@ -1,4 +1,4 @@
-#include "core/device/vulkan_runner.h"
+#include "core/device/vulkan/vulkan_runner.h"
 
 #include <cstddef>
 #include <numeric>

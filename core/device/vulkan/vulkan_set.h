@@ -1,5 +1,5 @@
 #pragma once
-#include "core/device/vulkan_runner.h"
+#include "core/device/vulkan/vulkan_runner.h"
 
 namespace sightline {
 

@@ -1,4 +1,4 @@
-#include "core/device/vulkan_set.h"
+#include "core/device/vulkan/vulkan_set.h"
 
 #include "core/device/hash_capacity.h"
 #include "core/shared/set.h"

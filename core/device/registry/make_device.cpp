@@ -1,12 +1,12 @@
-#include "core/device/make_device.h"
+#include "core/device/registry/make_device.h"
 
 #include <fmt/format.h>
 
-#include "core/device/cpu_device.h"
-#include "core/device/embree_device.h"
+#include "core/device/cpu/cpu_device.h"
+#include "core/device/embree/embree_device.h"
 #include "core/opencl/opencl_context.h"
-#include "core/device/opencl_device.h"
-#include "core/device/vulkan_device.h"
+#include "core/device/opencl/opencl_device.h"
+#include "core/device/vulkan/vulkan_device.h"
 #include "core/vulkan/vulkan_devices.h"
 #include "core/base/error.h"
 

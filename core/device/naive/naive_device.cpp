@@ -1,4 +1,4 @@
-#include "core/device/naive_device.h"
+#include "core/device/naive/naive_device.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>

@@ -1,4 +1,4 @@
-#include "core/device/vulkan_scene.h"
+#include "core/device/vulkan/vulkan_scene.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,4 +1,4 @@
-#include "core/device/opencl_scene.h"
+#include "core/device/opencl/opencl_scene.h"
 
 #include <algorithm>
 #include <bit>
