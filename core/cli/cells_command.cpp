@@ -22,10 +22,10 @@
 #include "core/report/status_line.h"
 #include "core/base/text.h"
 #include "core/formats/cells_file.h"
-#include "core/scene/clear_box.h"
+#include "core/place/clear_box.h"
 #include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
-#include "core/scene/place_cells.h"
+#include "core/place/place_cells.h"
 
 namespace sightline {
 namespace {

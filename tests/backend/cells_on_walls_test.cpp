@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/scene/place_cells.h"
+#include "core/place/place_cells.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"
 

@@ -1,5 +1,5 @@
 #include "core/base/interrupted.h"
-#include "core/scene/place_cells.h"
+#include "core/place/place_cells.h"
 
 #include <gtest/gtest.h>
 

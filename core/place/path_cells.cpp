@@ -5,9 +5,9 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/scene/clear_box.h"
+#include "core/place/clear_box.h"
 #include "core/scene/contained.h"
-#include "core/scene/place_cells.h"
+#include "core/place/place_cells.h"
 #include "core/scene/rotation.h"
 
 namespace sightline {

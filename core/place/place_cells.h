@@ -36,7 +36,7 @@ struct GridOptions {
   double max_height = 0;
   FreeSide free_side = FreeSide::kFront;  ///< kAny: keep boxes inside of solids, too
   /// How far boxes keep from triangles, at most an eighth of the smallest size; 0: they may touch some, and
-  /// then see what is behind. Not set: defaultMargin (core/scene/clear_box.h).
+  /// then see what is behind. Not set: defaultMargin (core/place/clear_box.h).
   std::optional<double> margin;
 };
 

@@ -10,9 +10,9 @@
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
 #include "core/scene/box_triangle.h"
-#include "core/scene/clear_box.h"
+#include "core/place/clear_box.h"
 #include "core/scene/leaves_in_box.h"
-#include "core/scene/place_cells.h"
+#include "core/place/place_cells.h"
 
 namespace sightline {
 namespace {

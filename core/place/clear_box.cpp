@@ -1,4 +1,4 @@
-#include "core/scene/clear_box.h"
+#include "core/place/clear_box.h"
 
 #include <fmt/format.h>
 
