@@ -17,7 +17,7 @@
 #include "core/gvs/algorithm_revision.h"
 #include "core/gvs/bake.h"
 #include "core/report/bake_page.h"
-#include "core/report/cell_pictures.h"
+#include "core/picture/cell_pictures.h"
 #include "core/report/cell_table.h"
 #include "core/report/progress.h"
 #include "core/report/report.h"

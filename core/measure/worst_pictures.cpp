@@ -5,9 +5,9 @@
 #include <regex>
 
 #include "core/base/error.h"
-#include "core/report/cell_pictures.h"
-#include "core/report/shading.h"
-#include "core/report/view_picture.h"
+#include "core/picture/cell_pictures.h"
+#include "core/picture/shading.h"
+#include "core/picture/view_picture.h"
 
 namespace sightline {
 

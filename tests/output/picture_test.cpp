@@ -1,12 +1,12 @@
-#include "core/report/picture.h"
+#include "core/picture/picture.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/report/outside_camera.h"
-#include "core/report/shading.h"
+#include "core/picture/outside_camera.h"
+#include "core/picture/shading.h"
 
 namespace sightline {
 namespace {

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/report/cell_overlay.h"
-#include "core/report/outside_camera.h"
-#include "core/report/picture.h"
-#include "core/report/shading.h"
+#include "core/picture/cell_overlay.h"
+#include "core/picture/outside_camera.h"
+#include "core/picture/picture.h"
+#include "core/picture/shading.h"
 
 namespace sightline {
 namespace {

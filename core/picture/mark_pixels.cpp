@@ -1,10 +1,10 @@
-#include "core/report/mark_pixels.h"
+#include "core/picture/mark_pixels.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "core/report/cell_overlay.h"
+#include "core/picture/cell_overlay.h"
 
 namespace sightline {
 namespace {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/report/picture.h"
+#include "core/picture/picture.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

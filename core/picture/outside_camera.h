@@ -3,7 +3,7 @@
 #include <optional>
 #include <span>
 
-#include "core/report/picture.h"
+#include "core/picture/picture.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

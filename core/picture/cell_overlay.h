@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "core/report/outside_camera.h"
+#include "core/picture/outside_camera.h"
 #include "core/io/png.h"
 #include "core/scene/view_cell.h"
 

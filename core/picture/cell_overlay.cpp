@@ -1,9 +1,9 @@
-#include "core/report/cell_overlay.h"
+#include "core/picture/cell_overlay.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/report/shading.h"
+#include "core/picture/shading.h"
 
 namespace sightline {
 namespace {

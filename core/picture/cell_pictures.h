@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/report/picture.h"
+#include "core/picture/picture.h"
 
 namespace sightline {
 

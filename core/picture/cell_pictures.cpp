@@ -1,4 +1,4 @@
-#include "core/report/cell_pictures.h"
+#include "core/picture/cell_pictures.h"
 
 #include <fmt/core.h>
 

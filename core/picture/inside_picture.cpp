@@ -3,9 +3,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/report/mark_pixels.h"
-#include "core/report/picture.h"
-#include "core/report/shading.h"
+#include "core/picture/mark_pixels.h"
+#include "core/picture/picture.h"
+#include "core/picture/shading.h"
 
 namespace sightline {
 namespace {

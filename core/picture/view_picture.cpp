@@ -1,11 +1,11 @@
-#include "core/report/view_picture.h"
+#include "core/picture/view_picture.h"
 
 #include <tbb/parallel_for.h>
 
 #include <vector>
 
-#include "core/report/mark_pixels.h"
-#include "core/report/shading.h"
+#include "core/picture/mark_pixels.h"
+#include "core/picture/shading.h"
 
 namespace sightline {
 

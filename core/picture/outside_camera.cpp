@@ -1,4 +1,4 @@
-#include "core/report/outside_camera.h"
+#include "core/picture/outside_camera.h"
 
 #include <algorithm>
 #include <array>
@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-#include "core/report/shading.h"
+#include "core/picture/shading.h"
 
 namespace sightline {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/report/shading.h"
+#include "core/picture/shading.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/report/picture.h"
+#include "core/picture/picture.h"
 
 namespace sightline {
 namespace {
