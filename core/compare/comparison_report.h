@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/compare/comparison.h"
-#include "core/report/html_report.h"
+#include "core/page/html_report.h"
 #include "core/report/report.h"
 
 namespace sightline {

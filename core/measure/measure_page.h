@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/measure/measure_report.h"
-#include "core/report/html_report.h"
+#include "core/page/html_report.h"
 
 namespace sightline {
 

@@ -8,7 +8,7 @@
 #include "core/pvs/stage_name.h"
 #include "core/report/cell_table.h"
 #include "core/io/csv.h"
-#include "core/report/curve_range.h"
+#include "core/page/curve_range.h"
 #include "core/base/text.h"
 
 namespace sightline {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/gvs/bake_trace.h"
-#include "core/report/html_report.h"
+#include "core/page/html_report.h"
 #include "core/report/report.h"
 
 namespace sightline {

@@ -1,4 +1,4 @@
-#include "core/report/curve_range.h"
+#include "core/page/curve_range.h"
 
 #include <gtest/gtest.h>
 

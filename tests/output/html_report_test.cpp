@@ -1,4 +1,4 @@
-#include "core/report/html_report.h"
+#include "core/page/html_report.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include "core/io/csv.h"
-#include "core/report/html_text.h"
-#include "core/report/page/parts.h"
+#include "core/page/html_text.h"
+#include "core/page/parts/parts.h"
 #include "core/io/base64.h"
 #include "tests/support/example_page.h"
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/report/html_report.h"
+#include "core/page/html_report.h"
 #include "core/io/png.h"
 
 namespace sightline::testing_support {

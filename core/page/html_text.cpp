@@ -1,4 +1,4 @@
-#include "core/report/html_text.h"
+#include "core/page/html_text.h"
 
 #include <cstdint>
 

@@ -2,7 +2,7 @@
 #include <span>
 #include <vector>
 
-#include "core/report/html_report.h"
+#include "core/page/html_report.h"
 
 namespace sightline {
 

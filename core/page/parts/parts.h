@@ -1,7 +1,7 @@
 #pragma once
 #include <string_view>
 
-// What every HTML report carries, embedded by core/report/page/CMakeLists.txt.
+// What every HTML report carries, embedded by core/page/parts/CMakeLists.txt.
 namespace sightline {
 
 extern const std::string_view kChartScript;  ///< Chart.js, minified, with its licence notice

@@ -2,7 +2,7 @@
 cmake_minimum_required(VERSION 3.25)
 string(REPLACE "|" ";" files "${FILES}")
 string(REPLACE "|" ";" names "${NAMES}")
-set(text "#include \"core/report/page/parts.h\"\nnamespace sightline {\n")
+set(text "#include \"core/page/parts/parts.h\"\nnamespace sightline {\n")
 foreach(file name IN ZIP_LISTS files names)
   file(READ ${file} digits HEX)
   string(REGEX REPLACE "(................................)" "\\1\n" digits "${digits}")

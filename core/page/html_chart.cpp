@@ -1,11 +1,11 @@
-#include "core/report/html_chart.h"
+#include "core/page/html_chart.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/report/html_text.h"
+#include "core/page/html_text.h"
 
 namespace sightline {
 namespace {

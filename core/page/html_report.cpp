@@ -1,12 +1,12 @@
-#include "core/report/html_report.h"
+#include "core/page/html_report.h"
 
 #include <fmt/format.h>
 
 #include <stdexcept>
 
-#include "core/report/html_chart.h"
-#include "core/report/html_text.h"
-#include "core/report/page/parts.h"
+#include "core/page/html_chart.h"
+#include "core/page/html_text.h"
+#include "core/page/parts/parts.h"
 #include "core/io/base64.h"
 #include "core/io/file_io.h"
 

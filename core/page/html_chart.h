@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "core/page/html_report.h"
+
+namespace sightline {
+
+/// The chart's figure: canvas, legend, and the table that core/page/parts/report.js draws it from.
+std::string chartHtml(const ReportChart& chart);
+
+}  // namespace sightline
