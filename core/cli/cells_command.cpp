@@ -19,7 +19,7 @@
 #include "core/base/error.h"
 #include "core/gvs/bake_cell.h"
 #include "core/base/interrupted.h"
-#include "core/report/status_line.h"
+#include "core/bake/status_line.h"
 #include "core/base/text.h"
 #include "core/formats/cells_file.h"
 #include "core/place/clear_box.h"

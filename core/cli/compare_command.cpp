@@ -17,7 +17,7 @@
 #include "core/device/naive/naive_device.h"
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
-#include "core/report/status_line.h"
+#include "core/bake/status_line.h"
 #include "core/base/text.h"
 #include "core/formats/cells_file.h"
 #include "core/io/file_io.h"

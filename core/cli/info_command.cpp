@@ -7,7 +7,7 @@
 #include "core/cli/commands.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
-#include "core/report/cell_table.h"
+#include "core/bake/cell_table.h"
 #include "core/base/text.h"
 #include "core/formats/cells_file.h"
 #include "core/io/file_io.h"

@@ -24,7 +24,7 @@
 #include "core/measure/worst_pictures.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
-#include "core/report/status_line.h"
+#include "core/bake/status_line.h"
 #include "core/base/text.h"
 #include "core/io/file_io.h"
 #include "core/formats/load_scene.h"

@@ -13,7 +13,7 @@
 #include "core/crosscheck/ray_answers.h"
 #include "core/device/registry/make_device.h"
 #include "core/base/error.h"
-#include "core/report/report.h"
+#include "core/bake/report.h"
 #include "core/base/text.h"
 #include "core/formats/load_scene.h"
 #include "core/shared/ray.h"

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/compare/comparison_report.h"
-#include "core/report/bake_page.h"
+#include "core/bake/bake_page.h"
 #include "core/base/text.h"
 
 namespace sightline {

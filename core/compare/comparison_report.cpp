@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/io/csv.h"
-#include "core/report/report_json.h"
+#include "core/bake/report_json.h"
 #include "core/base/text.h"
 
 namespace sightline {

@@ -4,7 +4,7 @@
 
 #include "core/compare/comparison.h"
 #include "core/page/html_report.h"
-#include "core/report/report.h"
+#include "core/bake/report.h"
 
 namespace sightline {
 

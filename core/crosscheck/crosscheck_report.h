@@ -4,8 +4,8 @@
 #include <string>
 
 #include "core/crosscheck/crosscheck.h"
-#include "core/report/cell_json.h"
-#include "core/report/report.h"
+#include "core/bake/cell_json.h"
+#include "core/bake/report.h"
 
 namespace sightline {
 

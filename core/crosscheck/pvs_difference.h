@@ -8,7 +8,7 @@
 #include "core/device/device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/pvs/pvs.h"
-#include "core/report/cell_json.h"
+#include "core/bake/cell_json.h"
 
 namespace sightline {
 

@@ -5,7 +5,7 @@
 
 #include "core/device/device.h"
 #include "core/judge/ruling.h"
-#include "core/report/cell_json.h"
+#include "core/bake/cell_json.h"
 
 namespace sightline {
 

@@ -7,7 +7,7 @@
 #include "core/crosscheck/cell_sight.h"
 #include "core/judge/ruling.h"
 #include "core/pvs/pvs.h"
-#include "core/report/cell_json.h"
+#include "core/bake/cell_json.h"
 
 namespace sightline {
 

@@ -5,8 +5,8 @@
 
 #include "core/device/device.h"
 #include "core/measure/pixel_error.h"
-#include "core/report/cell_json.h"
-#include "core/report/report.h"
+#include "core/bake/cell_json.h"
+#include "core/bake/report.h"
 
 namespace sightline {
 

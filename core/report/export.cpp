@@ -5,7 +5,7 @@
 #include <iterator>
 
 #include "core/base/error.h"
-#include "core/report/cell_json.h"
+#include "core/bake/cell_json.h"
 #include "core/base/text.h"
 
 namespace sightline {

@@ -1,4 +1,4 @@
-#include "core/report/bake_page.h"
+#include "core/bake/bake_page.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "core/report/bake_page.h"
+#include "core/bake/bake_page.h"
 #include "tests/output/example_pvs.h"
 #include "tests/support/chromium.h"
 #include "tests/support/example_page.h"

@@ -1,5 +1,5 @@
-#include "core/report/cell_table.h"
-#include "core/report/progress.h"
+#include "core/bake/cell_table.h"
+#include "core/bake/progress.h"
 
 #include <gtest/gtest.h>
 

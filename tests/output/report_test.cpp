@@ -1,5 +1,5 @@
-#include "core/report/cell_table.h"
-#include "core/report/report.h"
+#include "core/bake/cell_table.h"
+#include "core/bake/report.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/report/progress.h"
+#include "core/bake/progress.h"
 
 #include <fmt/core.h>
 #include <sys/ioctl.h>

@@ -1,8 +1,8 @@
-#include "core/report/status_line.h"
+#include "core/bake/status_line.h"
 
 #include <cstdio>
 
-#include "core/report/progress.h"
+#include "core/bake/progress.h"
 
 namespace sightline {
 namespace {

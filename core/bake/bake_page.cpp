@@ -1,4 +1,4 @@
-#include "core/report/bake_page.h"
+#include "core/bake/bake_page.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/pvs/stage_name.h"
-#include "core/report/cell_table.h"
+#include "core/bake/cell_table.h"
 #include "core/io/csv.h"
 #include "core/page/curve_range.h"
 #include "core/base/text.h"

@@ -1,4 +1,4 @@
-#include "core/gvs/bake.h"
+#include "core/bake/bake.h"
 
 #include <fmt/core.h>
 

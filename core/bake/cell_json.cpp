@@ -1,4 +1,4 @@
-#include "core/report/cell_json.h"
+#include "core/bake/cell_json.h"
 
 #include "core/base/text.h"
 

@@ -1,4 +1,4 @@
-#include "core/report/report_json.h"
+#include "core/bake/report_json.h"
 
 #include "core/base/text.h"
 

@@ -1,4 +1,4 @@
-#include "core/report/cell_table.h"
+#include "core/bake/cell_table.h"
 
 #include <fmt/format.h>
 

@@ -1,10 +1,10 @@
-#include "core/report/report.h"
+#include "core/bake/report.h"
 
 #include <fmt/core.h>
 #include <sys/resource.h>
 
-#include "core/report/cell_json.h"
-#include "core/report/report_json.h"
+#include "core/bake/cell_json.h"
+#include "core/bake/report_json.h"
 #include "core/base/text.h"
 
 namespace sightline {

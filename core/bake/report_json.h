@@ -1,8 +1,8 @@
 #pragma once
 #include <optional>
 
-#include "core/report/cell_json.h"
-#include "core/report/report.h"
+#include "core/bake/cell_json.h"
+#include "core/bake/report.h"
 
 // What the JSON reports of several commands have in common; keys as docs/report.md says.
 namespace sightline {
