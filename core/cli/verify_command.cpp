@@ -9,7 +9,7 @@
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
 #include "core/cli/rounding_option.h"
-#include "core/crosscheck/verify.h"
+#include "core/verify/verify.h"
 #include "core/base/error.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/base/text.h"

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/crosscheck/cell_sight.h"
+#include "core/verify/cell_sight.h"
 #include "core/crosscheck/difference.h"
 #include "core/device/device.h"
 #include "core/gvs/bake_cell.h"

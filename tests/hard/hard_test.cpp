@@ -6,7 +6,7 @@
 #include <map>
 
 #include "core/crosscheck/crosscheck.h"
-#include "core/crosscheck/verify.h"
+#include "core/verify/verify.h"
 #include "core/device/registry/make_device.h"
 #include "core/device/trace_only_device.h"
 #include "core/gvs/bake_cell.h"

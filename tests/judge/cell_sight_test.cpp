@@ -1,5 +1,5 @@
 // Rays and triangles of view cells by the cells' definition, and how much rounding is let pass.
-#include "core/crosscheck/cell_sight.h"
+#include "core/verify/cell_sight.h"
 
 #include <gtest/gtest.h>
 

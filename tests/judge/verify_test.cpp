@@ -1,5 +1,5 @@
 // Witnesses proven, made better, left open and disproved.
-#include "core/crosscheck/verify.h"
+#include "core/verify/verify.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include "core/io/float_text.h"
-#include "core/crosscheck/verify.h"
+#include "core/verify/verify.h"
 #include "core/pvs/stage_name.h"
 #include "core/base/text.h"
 

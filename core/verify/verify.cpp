@@ -1,4 +1,4 @@
-#include "core/crosscheck/verify.h"
+#include "core/verify/verify.h"
 
 #include <tbb/parallel_for.h>
 

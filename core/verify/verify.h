@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/crosscheck/cell_sight.h"
+#include "core/verify/cell_sight.h"
 #include "core/judge/ruling.h"
 #include "core/pvs/pvs.h"
 #include "core/bake/cell_json.h"

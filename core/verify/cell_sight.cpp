@@ -1,4 +1,4 @@
-#include "core/crosscheck/cell_sight.h"
+#include "core/verify/cell_sight.h"
 
 #include <algorithm>
 #include <cmath>
