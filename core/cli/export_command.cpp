@@ -10,7 +10,7 @@
 #include "core/base/error.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
-#include "core/report/export.h"
+#include "core/export/export.h"
 #include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/obj_text.h"

@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "core/base/error.h"
-#include "core/report/export.h"
+#include "core/export/export.h"
 #include "core/base/text.h"
 #include "tests/output/example_pvs.h"
 

@@ -1,4 +1,4 @@
-#include "core/report/export.h"
+#include "core/export/export.h"
 
 #include <fmt/format.h>
 
