@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/device/device.h"
+#include "core/trace/device_info.h"
 
 namespace sightline {
 

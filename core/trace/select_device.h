@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/device/device.h"
+#include "core/trace/device_info.h"
 #include "core/base/error.h"
 
 namespace sightline {

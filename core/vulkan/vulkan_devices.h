@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/device/device.h"
+#include "core/trace/device_info.h"
 #include "core/vulkan/vulkan_instance.h"
 
 namespace sightline {
