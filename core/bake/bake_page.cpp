@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/pvs/stage_name.h"
 #include "core/bake/cell_table.h"
+#include "core/base/text.h"
 #include "core/io/csv.h"
 #include "core/page/curve_range.h"
-#include "core/base/text.h"
+#include "core/pvs/stage_name.h"
 
 namespace sightline {
 namespace {

@@ -2,9 +2,9 @@
 #include <string>
 #include <vector>
 
+#include "core/bake/report.h"
 #include "core/gvs/bake_trace.h"
 #include "core/page/html_report.h"
-#include "core/bake/report.h"
 
 namespace sightline {
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/pvs/stage_name.h"
 #include "core/base/text.h"
+#include "core/pvs/stage_name.h"
 
 namespace sightline {
 namespace {

@@ -10,21 +10,21 @@
 #include <optional>
 #include <sstream>
 
+#include "core/bake/status_line.h"
+#include "core/base/error.h"
+#include "core/base/interrupted.h"
+#include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/free_side_option.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
 #include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
-#include "core/base/error.h"
-#include "core/gvs/bake_cell.h"
-#include "core/base/interrupted.h"
-#include "core/bake/status_line.h"
-#include "core/base/text.h"
 #include "core/formats/cells_file.h"
-#include "core/place/clear_box.h"
-#include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
+#include "core/gvs/bake_cell.h"
+#include "core/io/file_io.h"
+#include "core/place/clear_box.h"
 #include "core/place/place_cells.h"
 
 namespace sightline {

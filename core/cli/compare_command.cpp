@@ -4,6 +4,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/bake/status_line.h"
+#include "core/base/error.h"
+#include "core/base/interrupted.h"
+#include "core/base/text.h"
 #include "core/cli/bake_options.h"
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
@@ -13,15 +17,11 @@
 #include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
 #include "core/compare/comparison_report.h"
-#include "core/device/registry/make_device.h"
 #include "core/device/naive/naive_device.h"
-#include "core/base/error.h"
-#include "core/base/interrupted.h"
-#include "core/bake/status_line.h"
-#include "core/base/text.h"
+#include "core/device/registry/make_device.h"
 #include "core/formats/cells_file.h"
-#include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

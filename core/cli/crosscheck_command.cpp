@@ -5,6 +5,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/bake/status_line.h"
+#include "core/base/error.h"
+#include "core/base/interrupted.h"
+#include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
@@ -18,13 +22,9 @@
 #include "core/crosscheck/pvs_difference.h"
 #include "core/crosscheck/reproduce.h"
 #include "core/device/registry/make_device.h"
-#include "core/base/error.h"
-#include "core/base/interrupted.h"
-#include "core/bake/status_line.h"
-#include "core/base/text.h"
 #include "core/formats/cells_file.h"
-#include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

@@ -4,17 +4,17 @@
 #include <memory>
 #include <optional>
 
+#include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/text_outputs.h"
-#include "core/base/error.h"
-#include "core/pvs/choose_cell.h"
-#include "core/pvs/pvs_writer.h"
 #include "core/export/export.h"
-#include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/obj_text.h"
 #include "core/formats/save_scene.h"
+#include "core/io/file_io.h"
+#include "core/pvs/choose_cell.h"
+#include "core/pvs/pvs_writer.h"
 
 namespace sightline {
 namespace {

@@ -2,9 +2,9 @@
 #include <cstdio>
 #include <memory>
 
+#include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/nearest.h"
-#include "core/base/error.h"
 
 namespace sightline {
 namespace {

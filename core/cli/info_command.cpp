@@ -4,14 +4,14 @@
 #include <fstream>
 #include <memory>
 
-#include "core/cli/commands.h"
-#include "core/pvs/pvs_sections.h"
-#include "core/pvs/pvs_writer.h"
 #include "core/bake/cell_table.h"
 #include "core/base/text.h"
+#include "core/cli/commands.h"
 #include "core/formats/cells_file.h"
-#include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
+#include "core/io/file_io.h"
+#include "core/pvs/pvs_sections.h"
+#include "core/pvs/pvs_writer.h"
 
 namespace sightline {
 namespace {

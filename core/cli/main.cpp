@@ -10,10 +10,10 @@
 #include <new>
 #include <string>
 
+#include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/help_format.h"
 #include "core/cli/usage.h"
-#include "core/base/error.h"
 
 namespace sightline {
 namespace {

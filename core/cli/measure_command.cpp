@@ -8,6 +8,10 @@
 #include <limits>
 #include <memory>
 
+#include "core/bake/status_line.h"
+#include "core/base/error.h"
+#include "core/base/interrupted.h"
+#include "core/base/text.h"
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
@@ -17,17 +21,13 @@
 #include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
 #include "core/device/registry/make_device.h"
-#include "core/base/error.h"
+#include "core/formats/load_scene.h"
 #include "core/gvs/bake_cell.h"
-#include "core/base/interrupted.h"
+#include "core/io/file_io.h"
 #include "core/measure/measure_page.h"
 #include "core/measure/worst_pictures.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
-#include "core/bake/status_line.h"
-#include "core/base/text.h"
-#include "core/io/file_io.h"
-#include "core/formats/load_scene.h"
 
 namespace sightline {
 namespace {

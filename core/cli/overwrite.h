@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
-#include "core/cli/text_outputs.h"
 #include "core/base/error.h"
+#include "core/cli/text_outputs.h"
 #include "core/io/file_io.h"
 
 namespace sightline {

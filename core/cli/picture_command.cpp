@@ -7,19 +7,19 @@
 #include <memory>
 
 #include "bvh/bvh.h"
+#include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/device/device.h"
 #include "core/device/registry/make_device.h"
-#include "core/base/error.h"
+#include "core/formats/load_scene.h"
+#include "core/io/file_io.h"
+#include "core/picture/picture.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs.h"
 #include "core/pvs/pvs_writer.h"
-#include "core/picture/picture.h"
-#include "core/io/file_io.h"
-#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

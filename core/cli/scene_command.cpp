@@ -4,17 +4,17 @@
 #include <array>
 #include <memory>
 
+#include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/help_format.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
-#include "core/base/text.h"
 #include "core/formats/cells_file.h"
-#include "core/io/file_io.h"
-#include "core/generate/generate.h"
 #include "core/formats/obj_text.h"
 #include "core/formats/save_scene.h"
+#include "core/generate/generate.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

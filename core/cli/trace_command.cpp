@@ -4,18 +4,18 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/bake/report.h"
+#include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/rounding_option.h"
 #include "core/crosscheck/difference.h"
-#include "core/io/float_text.h"
 #include "core/crosscheck/ray_answers.h"
 #include "core/device/registry/make_device.h"
-#include "core/base/error.h"
-#include "core/bake/report.h"
-#include "core/base/text.h"
 #include "core/formats/load_scene.h"
+#include "core/io/float_text.h"
 #include "core/shared/ray.h"
 
 namespace sightline {

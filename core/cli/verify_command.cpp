@@ -4,17 +4,17 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
 #include "core/cli/rounding_option.h"
-#include "core/verify/verify.h"
-#include "core/base/error.h"
-#include "core/pvs/pvs_writer.h"
-#include "core/base/text.h"
-#include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
+#include "core/io/file_io.h"
+#include "core/pvs/pvs_writer.h"
+#include "core/verify/verify.h"
 
 namespace sightline {
 namespace {

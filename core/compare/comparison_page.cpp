@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "core/compare/comparison_report.h"
 #include "core/bake/bake_page.h"
 #include "core/base/text.h"
+#include "core/compare/comparison_report.h"
 
 namespace sightline {
 namespace {

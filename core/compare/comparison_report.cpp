@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "core/io/csv.h"
 #include "core/bake/report_json.h"
 #include "core/base/text.h"
+#include "core/io/csv.h"
 
 namespace sightline {
 namespace {

@@ -2,9 +2,9 @@
 #include <span>
 #include <string>
 
+#include "core/bake/report.h"
 #include "core/compare/comparison.h"
 #include "core/page/html_report.h"
-#include "core/bake/report.h"
 
 namespace sightline {
 

@@ -9,10 +9,10 @@
 #include <numeric>
 #include <tuple>
 
+#include "core/base/interrupted.h"
 #include "core/device/cpu/cpu_device.h"
 #include "core/device/trace_only_device.h"
 #include "core/gvs/bake_cell.h"
-#include "core/base/interrupted.h"
 #include "core/shared/ray.h"
 
 namespace sightline {

@@ -3,9 +3,9 @@
 #include <optional>
 #include <string>
 
-#include "core/crosscheck/crosscheck.h"
 #include "core/bake/cell_json.h"
 #include "core/bake/report.h"
+#include "core/crosscheck/crosscheck.h"
 
 namespace sightline {
 

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <iterator>
 
-#include "core/io/float_text.h"
-#include "core/crosscheck/ray_answers.h"
-#include "core/pvs/stage_name.h"
 #include "core/base/text.h"
+#include "core/crosscheck/ray_answers.h"
+#include "core/io/float_text.h"
+#include "core/pvs/stage_name.h"
 
 namespace sightline {
 namespace {

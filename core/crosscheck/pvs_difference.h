@@ -3,12 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "core/verify/cell_sight.h"
+#include "core/bake/cell_json.h"
 #include "core/crosscheck/difference.h"
 #include "core/device/device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/pvs/pvs.h"
-#include "core/bake/cell_json.h"
+#include "core/verify/cell_sight.h"
 
 namespace sightline {
 

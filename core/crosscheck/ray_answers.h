@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "core/bake/cell_json.h"
 #include "core/device/device.h"
 #include "core/judge/ruling.h"
-#include "core/bake/cell_json.h"
 
 namespace sightline {
 

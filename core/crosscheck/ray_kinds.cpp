@@ -7,9 +7,9 @@
 #include <iterator>
 
 #include "core/crosscheck/adversarial_rays.h"
-#include "core/sampling/ray_random.h"
 #include "core/gvs/bake_cell.h"
 #include "core/sampling/make_stage_params.h"
+#include "core/sampling/ray_random.h"
 #include "core/sampling/stage_rays.h"
 #include "core/shared/random_ray.h"
 

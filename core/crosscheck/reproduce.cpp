@@ -6,12 +6,12 @@
 #include <cmath>
 #include <map>
 
-#include "core/crosscheck/difference.h"
-#include "core/io/float_text.h"
-#include "core/device/registry/make_device.h"
 #include "core/base/error.h"
-#include "core/judge/seen_triangle.h"
+#include "core/crosscheck/difference.h"
+#include "core/device/registry/make_device.h"
 #include "core/io/file_io.h"
+#include "core/io/float_text.h"
+#include "core/judge/seen_triangle.h"
 #include "core/shared/vector.h"
 
 namespace sightline {

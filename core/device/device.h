@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "bvh/bvh.h"
-#include "core/trace/device_info.h"
 #include "core/scene/scene.h"
 #include "core/shared/stage_params.h"
 #include "core/shared/types.h"
 #include "core/shared/view_ray.h"
+#include "core/trace/device_info.h"
 
 namespace sightline {
 

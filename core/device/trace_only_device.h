@@ -1,6 +1,6 @@
 #pragma once
-#include "core/device/device.h"
 #include "core/base/error.h"
+#include "core/device/device.h"
 
 namespace sightline {
 

@@ -4,8 +4,8 @@
 
 #include <iterator>
 
-#include "core/base/error.h"
 #include "core/bake/cell_json.h"
+#include "core/base/error.h"
 #include "core/base/text.h"
 
 namespace sightline {

@@ -1,12 +1,13 @@
+#include "core/formats/cells_file.h"
+
 #include <fmt/format.h>
 
 #include <set>
 
 #include "core/base/error.h"
-#include "core/formats/cells_file.h"
-#include "core/scene/cell_problem.h"
 #include "core/io/file_io.h"
 #include "core/io/json_text.h"
+#include "core/scene/cell_problem.h"
 #include "core/scene/view_cell.h"
 
 namespace sightline {

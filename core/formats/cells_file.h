@@ -7,8 +7,8 @@
 
 namespace sightline {
 
-/// Reads and checks a cells file. Unknown keys (but x-...), missing keys, names twice, non-finite numbers, cells
-/// without area are errors that name file and place. Throws Error.
+/// Reads and checks a cells file. Unknown keys (but x-...), missing keys, names twice, non-finite numbers,
+/// cells without area are errors that name file and place. Throws Error.
 std::vector<ViewCell> loadCells(const std::filesystem::path& file);
 
 /// Writes a cells file that loadCells reads back exactly.

@@ -18,9 +18,9 @@ struct GltfVertexSource {
   size_t positions = 0;                              ///< accessor
   std::vector<std::pair<size_t, uint64_t>> targets;  ///< accessors and weights (a double's bits) of morph
                                                      ///< targets whose weight is not 0
-  std::optional<size_t> skin;              ///< then joints and weights are not empty
-  std::vector<size_t> joints, weights;     ///< accessors
-  std::array<uint64_t, 16> to_world = {};  ///< a matrix's bits; identity with a skin
+  std::optional<size_t> skin;                        ///< then joints and weights are not empty
+  std::vector<size_t> joints, weights;               ///< accessors
+  std::array<uint64_t, 16> to_world = {};            ///< a matrix's bits; identity with a skin
   auto operator<=>(const GltfVertexSource&) const = default;
 };
 

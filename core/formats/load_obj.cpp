@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "core/base/error.h"
-#include "core/io/beside.h"
-#include "core/io/decimal.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/loaders.h"
 #include "core/formats/mtl_file.h"
 #include "core/formats/obj_lines.h"
 #include "core/formats/scene_builder.h"
+#include "core/io/beside.h"
+#include "core/io/decimal.h"
 
 namespace sightline {
 namespace {

@@ -9,11 +9,11 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/io/decimal.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/loaders.h"
 #include "core/formats/ply_header.h"
 #include "core/formats/scene_builder.h"
+#include "core/io/decimal.h"
 
 namespace sightline {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
-#include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
+#include "core/io/file_io.h"
 
 namespace sightline {
 

@@ -2,8 +2,8 @@
 
 #include <optional>
 
-#include "core/io/decimal.h"
 #include "core/formats/obj_lines.h"
+#include "core/io/decimal.h"
 
 namespace sightline {
 namespace {

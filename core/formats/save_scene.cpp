@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
-#include "core/io/file_io.h"
 #include "core/formats/obj_text.h"
-#include "core/scene/scene.h"
 #include "core/formats/scene_builder.h"
+#include "core/io/file_io.h"
+#include "core/scene/scene.h"
 
 namespace sightline {
 namespace {

@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/formats/triangulate.h"
 #include "core/scene/precision_warning.h"
 #include "core/scene/triangle_area.h"
-#include "core/formats/triangulate.h"
 
 namespace sightline {
 namespace {

@@ -19,9 +19,9 @@ class CanyonTerrain {
  public:
   CanyonTerrain(float extent, uint64_t seed);
 
-  float extent() const { return extent_; }   ///< x and z from -extent / 2 to extent / 2
-  float width() const { return width_; }     ///< from the river to the rim
-  float depth() const { return depth_; }     ///< from the floor to the rim; the floor is near y = 0
+  float extent() const { return extent_; }  ///< x and z from -extent / 2 to extent / 2
+  float width() const { return width_; }    ///< from the river to the rim
+  float depth() const { return depth_; }    ///< from the floor to the rim; the floor is near y = 0
   float riverZ(float x) const;
   /// How far from the nearest river, in shares of the canyon's width there.
   float steepness(glm::vec2 xz) const;

@@ -7,8 +7,8 @@
 #include "core/generate/canyon_terrain.h"
 #include "core/generate/generator_random.h"
 #include "core/generate/rocks.h"
-#include "core/scene/rotation.h"
 #include "core/generate/scene_generators.h"
+#include "core/scene/rotation.h"
 
 namespace sightline {
 namespace {

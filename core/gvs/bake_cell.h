@@ -2,10 +2,10 @@
 #include <atomic>
 #include <functional>
 
+#include "core/base/interrupted.h"
 #include "core/device/device.h"
 #include "core/gvs/bake_progress.h"
 #include "core/gvs/bake_trace.h"
-#include "core/base/interrupted.h"
 #include "core/pvs/pvs.h"
 #include "core/scene/scene.h"
 

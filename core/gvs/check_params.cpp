@@ -21,7 +21,8 @@ void checkParams(const BakeParams& p) {
   require(p.order <= Order::kYield, "no such order");
   require(p.n_rs_edge <= 1000, "n-rs-edge must be 0 .. 1000");
   require(p.n_rs_area <= 100'000, "n-rs-area must be 0 .. 100000");
-  require(p.batch_rays >= kFewestBatchRays && p.batch_rays <= 1u << 28, "batch-rays must be 4096 .. 268435456");
+  require(p.batch_rays >= kFewestBatchRays && p.batch_rays <= 1u << 28,
+          "batch-rays must be 4096 .. 268435456");
   require(p.quiet_iterations >= 1, "quiet-iterations must be at least 1");
   require(p.threshold >= 1 || p.max_rays > 0 || p.max_seconds > 0 || p.target_error > 0,
           "threshold 0 never ends: give max-rays, max-seconds or target-error too");

@@ -11,8 +11,8 @@
 #include <numbers>
 #include <utility>
 
-#include "core/pvs/pvs.h"
 #include "core/base/splitmix.h"
+#include "core/pvs/pvs.h"
 
 namespace sightline {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/io/csv.h"
 #include "core/base/text.h"
+#include "core/io/csv.h"
 
 namespace sightline {
 namespace {

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "core/device/device.h"
-#include "core/measure/pixel_error.h"
 #include "core/bake/cell_json.h"
 #include "core/bake/report.h"
+#include "core/device/device.h"
+#include "core/measure/pixel_error.h"
 
 namespace sightline {
 

@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "core/gvs/bake_cell.h"
 #include "core/base/interrupted.h"
+#include "core/gvs/bake_cell.h"
 #include "core/measure/classifier.h"
 
 namespace sightline {

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "cl_kernels/program_source.h"
-#include "core/opencl/opencl_devices.h"
-#include "core/base/parallel_copy.h"
 #include "core/base/error.h"
+#include "core/base/parallel_copy.h"
+#include "core/opencl/opencl_devices.h"
 
 namespace sightline {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstdlib>
 #include <utility>
 
-#include "core/trace/select_device.h"
 #include "core/base/error.h"
+#include "core/trace/select_device.h"
 
 namespace sightline {
 namespace {

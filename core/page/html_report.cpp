@@ -4,11 +4,11 @@
 
 #include <stdexcept>
 
+#include "core/io/base64.h"
+#include "core/io/file_io.h"
 #include "core/page/html_chart.h"
 #include "core/page/html_text.h"
 #include "core/page/parts/parts.h"
-#include "core/io/base64.h"
-#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

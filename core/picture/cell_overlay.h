@@ -2,8 +2,8 @@
 #include <span>
 #include <vector>
 
-#include "core/picture/outside_camera.h"
 #include "core/io/png.h"
+#include "core/picture/outside_camera.h"
 #include "core/scene/view_cell.h"
 
 namespace sightline {

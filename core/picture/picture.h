@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/pvs/pvs.h"
 #include "core/io/png.h"
+#include "core/pvs/pvs.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

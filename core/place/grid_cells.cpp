@@ -6,13 +6,13 @@
 #include <glm/gtc/type_precision.hpp>
 #include <string>
 
-#include "core/trace/cpu_tracer.h"
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
-#include "core/scene/box_triangle.h"
 #include "core/place/clear_box.h"
-#include "core/scene/leaves_in_box.h"
 #include "core/place/place_cells.h"
+#include "core/scene/box_triangle.h"
+#include "core/scene/leaves_in_box.h"
+#include "core/trace/cpu_tracer.h"
 
 namespace sightline {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "core/base/error.h"
 #include "core/place/clear_box.h"
-#include "core/scene/contained.h"
 #include "core/place/place_cells.h"
+#include "core/scene/contained.h"
 #include "core/scene/rotation.h"
 
 namespace sightline {

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <map>
 
+#include "core/io/file_io.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
-#include "core/io/file_io.h"
 
 namespace sightline {
 namespace {

@@ -11,9 +11,9 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/io/publish.h"
 #include "core/pvs/checksum.h"
 #include "core/pvs/pvs_sections.h"
-#include "core/io/publish.h"
 
 namespace sightline {
 namespace {

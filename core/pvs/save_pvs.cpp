@@ -1,7 +1,7 @@
+#include "core/io/file_io.h"
 #include "core/pvs/checksum.h"
 #include "core/pvs/pvs.h"
 #include "core/pvs/pvs_sections.h"
-#include "core/io/file_io.h"
 
 namespace sightline {
 

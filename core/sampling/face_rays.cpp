@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/base/splitmix.h"
 #include "core/shared/halton.h"
 #include "core/shared/vector.h"
-#include "core/base/splitmix.h"
 
 namespace sightline {
 

@@ -1,8 +1,8 @@
 #pragma once
 #include <cstdint>
 
-#include "core/shared/language.h"
 #include "core/base/splitmix.h"
+#include "core/shared/language.h"
 
 namespace sightline {
 

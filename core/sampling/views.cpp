@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/splitmix.h"
 #include "core/scene/rotation.h"
 #include "core/shared/halton.h"
-#include "core/base/splitmix.h"
 
 namespace sightline {
 namespace {

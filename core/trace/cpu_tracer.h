@@ -2,9 +2,9 @@
 #include <vector>
 
 #include "bvh/bvh.h"
-#include "core/trace/trace_layout.h"
 #include "core/scene/scene.h"
 #include "core/shared/types.h"
+#include "core/trace/trace_layout.h"
 
 namespace sightline {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/trace/device_info.h"
 #include "core/base/error.h"
+#include "core/trace/device_info.h"
 
 namespace sightline {
 

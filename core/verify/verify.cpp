@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "core/sampling/ray_random.h"
 #include "core/judge/seen_triangle.h"
+#include "core/sampling/ray_random.h"
 #include "core/scene/contained.h"
 
 namespace sightline {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "core/verify/cell_sight.h"
+#include "core/bake/cell_json.h"
 #include "core/judge/ruling.h"
 #include "core/pvs/pvs.h"
-#include "core/bake/cell_json.h"
+#include "core/verify/cell_sight.h"
 
 namespace sightline {
 

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include "core/io/float_text.h"
-#include "core/verify/verify.h"
-#include "core/pvs/stage_name.h"
 #include "core/base/text.h"
+#include "core/io/float_text.h"
+#include "core/pvs/stage_name.h"
+#include "core/verify/verify.h"
 
 namespace sightline {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <utility>
 
-#include "core/trace/select_device.h"
 #include "core/base/error.h"
+#include "core/trace/select_device.h"
 
 namespace sightline {
 namespace {

@@ -2,12 +2,12 @@
 // direction is none.
 #include <gtest/gtest.h>
 
-#include "core/device/registry/make_device.h"
 #include "core/device/naive/naive_device.h"
+#include "core/device/registry/make_device.h"
+#include "core/generate/generate.h"
 #include "core/sampling/face_rays.h"
 #include "core/sampling/make_stage_params.h"
 #include "core/sampling/random_segment.h"
-#include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"
 #include "tests/support/vulkan.h"
@@ -119,8 +119,7 @@ TEST_P(Counters, AreThoseOfRaysTracedOneByOne) {
     bake.n_abs_edge = bake.n_rs_edge = bake.n_rs_area = 3;
     for (const double depth : {2.0, 0.0}) {
       const std::vector<Face> faces = cellFaces({"cell", {0, 0, 0}, {3, 1, depth}});
-      const StageParams params =
-          makeStageParams(bake, faces, haltonShifts(1, 0, RandomUse::kSampling));
+      const StageParams params = makeStageParams(bake, faces, haltonShifts(1, 0, RandomUse::kSampling));
       const std::vector<std::string> log = run(*device, faces, params, contained);
       const std::vector<std::string> expected = run(*naive, faces, params, contained);
       ASSERT_EQ(log.size(), expected.size());

@@ -1,10 +1,10 @@
 // The sets of found triangles in the memory of OpenCL and Vulkan devices.
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
 #include "core/device/opencl/opencl_scene.h"
 #include "core/device/opencl/opencl_set.h"
 #include "core/device/vulkan/vulkan_set.h"
-#include "core/base/error.h"
 #include "tests/support/vulkan.h"
 
 namespace sightline {

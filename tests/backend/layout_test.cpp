@@ -13,11 +13,11 @@
 #include <iterator>
 
 #include "bvh/bvh.h"
-#include "core/trace/trace_layout.h"
 #include "core/device/vulkan/vulkan_runner.h"
 #include "core/shared/border.h"
 #include "core/shared/reverse.h"
 #include "core/shared/view_ray.h"
+#include "core/trace/trace_layout.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/vulkan.h"
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "core/device/registry/make_device.h"
-#include "core/device/naive/naive_device.h"
 #include "core/base/error.h"
+#include "core/device/naive/naive_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

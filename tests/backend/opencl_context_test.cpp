@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/opencl/opencl_devices.h"
 #include "core/base/error.h"
+#include "core/opencl/opencl_devices.h"
 
 namespace sightline {
 namespace {

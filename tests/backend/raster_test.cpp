@@ -5,12 +5,12 @@
 #include <cmath>
 #include <optional>
 
-#include "core/device/registry/make_device.h"
-#include "core/vulkan/vulkan_devices.h"
 #include "core/base/error.h"
-#include "core/sampling/hemicube.h"
+#include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
+#include "core/sampling/hemicube.h"
 #include "core/shared/vector.h"
+#include "core/vulkan/vulkan_devices.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"
 #include "tests/support/random_triangles.h"

@@ -1,11 +1,11 @@
 // OpenCL's hits, bit by bit those of the reference.
 #include <gtest/gtest.h>
 
-#include "core/trace/cpu_tracer.h"
-#include "core/device/opencl/opencl_scene.h"
 #include "core/base/error.h"
+#include "core/device/opencl/opencl_scene.h"
 #include "core/sampling/random_segment.h"
 #include "core/shared/random_ray.h"
+#include "core/trace/cpu_tracer.h"
 #include "tests/backend/trace_cases.h"
 
 namespace sightline {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "core/trace/cpu_tracer.h"
 #include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
+#include "core/trace/cpu_tracer.h"
 #include "tests/backend/trace_cases.h"
 #include "tests/support/vulkan.h"
 

@@ -3,13 +3,13 @@
 
 #include <cmath>
 
-#include "core/trace/cpu_tracer.h"
-#include "core/device/registry/make_device.h"
-#include "core/device/naive/naive_device.h"
 #include "core/base/error.h"
-#include "core/sampling/random_segment.h"
+#include "core/device/naive/naive_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
+#include "core/sampling/random_segment.h"
 #include "core/shared/random_ray.h"
+#include "core/trace/cpu_tracer.h"
 #include "tests/backend/trace_cases.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/vulkan.h"

@@ -3,10 +3,10 @@
 
 #include <cstdlib>
 
-#include "core/vulkan/vulkan_commands.h"
-#include "core/device/vulkan/vulkan_scene.h"
 #include "core/base/error.h"
+#include "core/device/vulkan/vulkan_scene.h"
 #include "core/generate/generate.h"
+#include "core/vulkan/vulkan_commands.h"
 #include "tests/support/vulkan.h"
 
 namespace sightline {

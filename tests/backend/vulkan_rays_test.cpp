@@ -4,16 +4,16 @@
 #include <cstring>
 #include <numeric>
 
-#include "core/trace/cpu_tracer.h"
 #include "core/device/vulkan/vulkan_runner.h"
 #include "core/device/vulkan/vulkan_scene.h"
+#include "core/generate/generate.h"
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
-#include "core/generate/generate.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/border.h"
 #include "core/shared/random_ray.h"
 #include "core/shared/reverse.h"
+#include "core/trace/cpu_tracer.h"
 #include "tests/backend/trace_cases.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/vulkan.h"

@@ -8,8 +8,8 @@
 #include <map>
 #include <numbers>
 
-#include "core/trace/cpu_tracer.h"
 #include "core/device/opencl/opencl_scene.h"
+#include "core/trace/cpu_tracer.h"
 #include "tests/backend/trace_cases.h"
 
 namespace sightline {

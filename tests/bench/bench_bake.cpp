@@ -12,9 +12,9 @@
 
 #include "core/cli/number_checks.h"
 #include "core/device/registry/make_device.h"
-#include "core/gvs/bake_cell.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
+#include "core/gvs/bake_cell.h"
 #include "core/scene/scene.h"
 #include "tests/bench/bench_main.h"
 #include "tests/bench/timed_device.h"

@@ -16,13 +16,13 @@
 
 #include "core/cli/number_checks.h"
 #include "core/device/registry/make_device.h"
+#include "core/formats/cells_file.h"
+#include "core/formats/load_scene.h"
 #include "core/gvs/bake_cell.h"
+#include "core/gvs/thesis_params.h"
 #include "core/sampling/face_rays.h"
 #include "core/sampling/make_stage_params.h"
 #include "core/sampling/stage_rays.h"
-#include "core/gvs/thesis_params.h"
-#include "core/formats/cells_file.h"
-#include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
 #include "tests/bench/bench_main.h"
 

@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "bvh/bvh.h"
-#include "core/trace/cpu_tracer.h"
+#include "core/generate/generate.h"
 #include "core/sampling/make_stage_params.h"
 #include "core/sampling/random_segment.h"
-#include "core/generate/generate.h"
 #include "core/scene/view_cell.h"
 #include "core/shared/gvs_border.h"
 #include "core/shared/random_ray.h"
+#include "core/trace/cpu_tracer.h"
 
 // The rays of bench_trace: random ones of cells in a generated city, and border rays of what they hit.
 namespace sightline {

@@ -8,8 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/formats/cells_file.h"
-#include "core/io/file_io.h"
 #include "core/formats/load_scene.h"
+#include "core/io/file_io.h"
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"
 #include "tests/output/version_3_file.h"

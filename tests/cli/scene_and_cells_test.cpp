@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "core/formats/cells_file.h"
-#include "core/io/file_io.h"
-#include "core/generate/generate.h"
 #include "core/formats/load_scene.h"
+#include "core/generate/generate.h"
+#include "core/io/file_io.h"
 #include "tests/cli/run_program.h"
 #include "tests/scene/files.h"
 

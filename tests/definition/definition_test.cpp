@@ -1,10 +1,10 @@
 // Sets against their definition, in both directions, for all kinds of cells; and faults that this must find.
-#include "core/device/registry/make_device.h"
 #include "tests/definition/definition.h"
 
 #include <gtest/gtest.h>
 
 #include "core/device/naive/naive_device.h"
+#include "core/device/registry/make_device.h"
 #include "core/gvs/bake_cell.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

@@ -6,10 +6,10 @@
 #include <map>
 
 #include "core/crosscheck/crosscheck.h"
-#include "core/verify/verify.h"
 #include "core/device/registry/make_device.h"
 #include "core/device/trace_only_device.h"
 #include "core/gvs/bake_cell.h"
+#include "core/verify/verify.h"
 #include "tests/hard/hard_cases.h"
 
 namespace sightline {

@@ -1,10 +1,10 @@
 // Embree as a peer: it answers rays, before the same judge, and bakes nothing.
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
 #include "core/crosscheck/crosscheck.h"
 #include "core/device/embree/embree_device.h"
 #include "core/device/registry/make_device.h"
-#include "core/base/error.h"
 #include "tests/judge/judge_cases.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/crosscheck/crosscheck_report.h"
 #include "core/base/interrupted.h"
+#include "core/crosscheck/crosscheck_report.h"
 #include "tests/judge/wrong_device.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

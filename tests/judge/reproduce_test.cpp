@@ -5,10 +5,10 @@
 
 #include <fstream>
 
-#include "core/crosscheck/crosscheck.h"
 #include "core/base/error.h"
-#include "core/io/file_io.h"
+#include "core/crosscheck/crosscheck.h"
 #include "core/formats/load_scene.h"
+#include "core/io/file_io.h"
 #include "tests/judge/judge_cases.h"
 #include "tests/judge/wrong_device.h"
 #include "tests/support/temporary_folder.h"

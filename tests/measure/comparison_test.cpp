@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "core/device/registry/make_device.h"
 #include "core/base/error.h"
-#include "core/measure/missing_rays.h"
+#include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
+#include "core/measure/missing_rays.h"
 #include "tests/support/bake_scene.h"
 
 namespace sightline {

@@ -1,5 +1,4 @@
 // The promise of --target-error, and the rays it stands on.
-#include "core/device/registry/make_device.h"
 #include "core/gvs/error_bound.h"
 
 #include <gtest/gtest.h>
@@ -9,9 +8,10 @@
 #include <random>
 #include <set>
 
-#include "core/trace/cpu_tracer.h"
 #include "core/base/error.h"
+#include "core/device/registry/make_device.h"
 #include "core/measure/pixel_error.h"
+#include "core/trace/cpu_tracer.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"
 #include "tests/support/random_triangles.h"

@@ -1,6 +1,4 @@
 // Scenes whose pixel error is known by construction.
-#include "core/device/registry/make_device.h"
-#include "core/base/interrupted.h"
 #include "core/measure/pixel_error.h"
 
 #include <gtest/gtest.h>
@@ -9,6 +7,8 @@
 #include <random>
 
 #include "core/base/error.h"
+#include "core/base/interrupted.h"
+#include "core/device/registry/make_device.h"
 #include "core/gvs/bake_cell.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"

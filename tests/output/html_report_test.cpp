@@ -6,10 +6,10 @@
 #include <regex>
 #include <stdexcept>
 
+#include "core/io/base64.h"
 #include "core/io/csv.h"
 #include "core/page/html_text.h"
 #include "core/page/parts/parts.h"
-#include "core/io/base64.h"
 #include "tests/support/example_page.h"
 
 namespace sightline {

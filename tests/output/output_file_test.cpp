@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "core/pvs/pvs_writer.h"
 #include "core/io/file_io.h"
+#include "core/pvs/pvs_writer.h"
 #include "tests/output/example_pvs.h"
 #include "tests/output/system_calls.h"
 

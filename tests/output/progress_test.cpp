@@ -1,10 +1,10 @@
-#include "core/bake/cell_table.h"
 #include "core/bake/progress.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
+#include "core/bake/cell_table.h"
 #include "core/base/text.h"
 #include "tests/output/example_pvs.h"
 

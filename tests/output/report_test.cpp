@@ -1,4 +1,3 @@
-#include "core/bake/cell_table.h"
 #include "core/bake/report.h"
 
 #include <gtest/gtest.h>
@@ -9,9 +8,10 @@
 #include <set>
 #include <sstream>
 
+#include "core/bake/cell_table.h"
 #include "core/base/error.h"
-#include "core/export/export.h"
 #include "core/base/text.h"
+#include "core/export/export.h"
 #include "tests/output/example_pvs.h"
 
 namespace sightline {

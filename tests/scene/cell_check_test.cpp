@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "core/trace/cpu_tracer.h"
-#include "core/scene/contained.h"
 #include "core/generate/generate.h"
+#include "core/scene/contained.h"
+#include "core/trace/cpu_tracer.h"
 #include "tests/support/boxes.h"
 
 namespace sightline {

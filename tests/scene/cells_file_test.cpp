@@ -1,9 +1,10 @@
+#include "core/formats/cells_file.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "core/formats/cells_file.h"
 #include "core/scene/view_cell.h"
 #include "tests/scene/files.h"
 

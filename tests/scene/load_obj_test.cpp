@@ -8,8 +8,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/io/decimal.h"
 #include "core/formats/load_scene.h"
+#include "core/io/decimal.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 

@@ -1,4 +1,3 @@
-#include "core/base/interrupted.h"
 #include "core/place/place_cells.h"
 
 #include <gtest/gtest.h>
@@ -11,11 +10,12 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/interrupted.h"
+#include "core/generate/generate.h"
+#include "core/generate/mesh_builder.h"
 #include "core/gvs/bake_cell.h"
 #include "core/scene/cell_frame.h"
 #include "core/scene/contained.h"
-#include "core/generate/generate.h"
-#include "core/generate/mesh_builder.h"
 #include "tests/scene/box_overlap.h"
 
 namespace sightline {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "core/generate/generate.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/save_scene.h"
+#include "core/generate/generate.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 #include "tests/scene/gltf_files.h"

@@ -1,3 +1,5 @@
+#include "core/formats/save_scene.h"
+
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -7,7 +9,6 @@
 #include <random>
 
 #include "core/formats/load_scene.h"
-#include "core/formats/save_scene.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 

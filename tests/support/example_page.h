@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/page/html_report.h"
 #include "core/io/png.h"
+#include "core/page/html_report.h"
 
 namespace sightline::testing_support {
 

@@ -1,4 +1,3 @@
-#include "core/device/hash_capacity.h"
 #include "core/shared/set.h"
 
 #include <gtest/gtest.h>
@@ -9,8 +8,9 @@
 #include <map>
 #include <random>
 
-#include "core/device/cpu/host_set.h"
 #include "core/base/error.h"
+#include "core/device/cpu/host_set.h"
+#include "core/device/hash_capacity.h"
 
 namespace sightline {
 namespace {
@@ -66,8 +66,8 @@ TEST_P(Set, OldTrianglesStayOld) {
   EXPECT_EQ(set.fresh()[0] | set.fresh()[2] | set.fresh()[3], 0u);
 }
 
-/// An array overflows where a thread loses every race for a slot; the launch is repeated and must find the set
-/// as it was.
+/// An array overflows where a thread loses every race for a slot; the launch is repeated and must find the
+/// set as it was.
 TEST_P(Set, GrowingAfterAnOverflowLosesNothing) {
   HostSet set(100, GetParam());
   insertHit(set.ref(), 42, 9);

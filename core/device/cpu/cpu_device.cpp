@@ -12,11 +12,11 @@
 #include <numeric>
 #include <utility>
 
-#include "core/trace/cpu_tracer.h"
-#include "core/device/cpu/host_set.h"
 #include "core/base/error.h"
+#include "core/device/cpu/host_set.h"
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
+#include "core/trace/cpu_tracer.h"
 
 namespace sightline {
 namespace {

@@ -4,9 +4,9 @@
 #include <numeric>
 #include <utility>
 
-#include "core/opencl/opencl_context.h"
 #include "core/device/opencl/opencl_scene.h"
 #include "core/device/opencl/opencl_set.h"
+#include "core/opencl/opencl_context.h"
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
 #include "core/shared/border.h"

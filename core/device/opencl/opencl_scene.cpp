@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <bit>
 
-#include "core/trace/trace_layout.h"
 #include "core/shared/box.h"
+#include "core/trace/trace_layout.h"
 
 namespace sightline {
 namespace {

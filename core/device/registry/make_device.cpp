@@ -2,13 +2,13 @@
 
 #include <fmt/format.h>
 
+#include "core/base/error.h"
 #include "core/device/cpu/cpu_device.h"
 #include "core/device/embree/embree_device.h"
-#include "core/opencl/opencl_context.h"
 #include "core/device/opencl/opencl_device.h"
 #include "core/device/vulkan/vulkan_device.h"
+#include "core/opencl/opencl_context.h"
 #include "core/vulkan/vulkan_devices.h"
-#include "core/base/error.h"
 
 namespace sightline {
 

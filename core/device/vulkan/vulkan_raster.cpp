@@ -6,8 +6,8 @@
 #include <iterator>
 #include <vector>
 
-#include "core/vulkan/vulkan_stage.h"
 #include "core/base/error.h"
+#include "core/vulkan/vulkan_stage.h"
 
 namespace sightline {
 namespace {

@@ -1,9 +1,9 @@
 #pragma once
 #include <array>
 
-#include "core/vulkan/vulkan_image.h"
 #include "core/device/vulkan/vulkan_runner.h"
 #include "core/shared/hemicube.h"
+#include "core/vulkan/vulkan_image.h"
 
 namespace sightline {
 

@@ -1,6 +1,6 @@
 #pragma once
-#include "core/vulkan/vulkan_tree.h"
 #include "core/scene/scene.h"
+#include "core/vulkan/vulkan_tree.h"
 #include "vk_shaders/launch.h"
 
 namespace sightline {
