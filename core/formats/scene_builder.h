@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/formats/load_scene.h"
+#include "core/formats/triangulate.h"
 #include "core/scene/scene.h"
 
 namespace sightline {
@@ -78,6 +79,7 @@ class SceneBuilder {
       remainders_;                  ///< what positions lost by rounding; shorter if the others lost nothing
   std::vector<glm::vec3> corners_;  ///< of the polygon in work
   std::vector<glm::uvec3> cut_;
+  uint64_t cut_tests_left_ = kMaxCutTests;
 };
 
 }  // namespace sightline
