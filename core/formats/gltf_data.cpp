@@ -113,6 +113,12 @@ std::span<const uint8_t> GltfData::buffer(size_t index) {
   return bytes.data;
 }
 
+uint64_t GltfData::bytesOfUris() const {
+  uint64_t bytes = 0;
+  for (const Bytes& buffer : buffers_) bytes += buffer.own.size();
+  return bytes;
+}
+
 std::span<const uint8_t> GltfData::part(size_t index, uint64_t offset, uint64_t length,
                                         const std::string& place) {
   const std::span<const uint8_t> bytes = buffer(index);
