@@ -71,20 +71,22 @@ std::string vectorText(const glm::dvec3& value) {
 }  // namespace
 
 std::vector<ViewCell> loadCells(const std::filesystem::path& file) {
-  const std::string name = file.string();
-  const FileBytes bytes = readFile(file);
-  if (bytes.size == 0) throw Error(fmt::format("{}: is empty, expected {{\"cells\":[...]}}", name));
-  const json document = parseJson(bytes.view(), name);
-  if (!document.is_object()) throw Error(fmt::format("{}: expected an object {{\"cells\":[...]}}", name));
-  checkKeys(document, {"cells"}, name, "top level");
-  if (!document.contains("cells")) fail(name, "top level", "key \"cells\" is missing");
-  if (!document["cells"].is_array()) fail(name, "cells", "expected a list");
+  return parseCells(readFile(file).view(), file.string());
+}
+
+std::vector<ViewCell> parseCells(std::string_view text, const std::string& file) {
+  if (text.empty()) throw Error(fmt::format("{}: is empty, expected {{\"cells\":[...]}}", file));
+  const json document = parseJson(text, file);
+  if (!document.is_object()) throw Error(fmt::format("{}: expected an object {{\"cells\":[...]}}", file));
+  checkKeys(document, {"cells"}, file, "top level");
+  if (!document.contains("cells")) fail(file, "top level", "key \"cells\" is missing");
+  if (!document["cells"].is_array()) fail(file, "cells", "expected a list");
 
   std::vector<ViewCell> cells;
   for (const json& value : document["cells"]) {
-    cells.push_back(readCell(value, name, fmt::format("cells[{}]", cells.size())));
+    cells.push_back(readCell(value, file, fmt::format("cells[{}]", cells.size())));
   }
-  checkCells(cells, name);
+  checkCells(cells, file);
   return cells;
 }
 

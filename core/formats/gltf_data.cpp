@@ -59,7 +59,8 @@ std::vector<uint8_t> readBesides(const std::string& uri, const std::filesystem::
     throw Error(fmt::format("{}: only data: and files beside the scene are supported", place));
   }
   const std::string name = percentDecoded(uri, place);
-  if (name.empty() || name.find('\0') != std::string::npos)
+  const auto isControl = [](char c) { return static_cast<unsigned char>(c) < 0x20; };
+  if (name.empty() || std::any_of(name.begin(), name.end(), isControl))
     throw Error(fmt::format("{}: bad file name", place));
   const auto beside = besideScene(file, name);
   if (!beside) {
@@ -110,6 +111,12 @@ std::span<const uint8_t> GltfData::buffer(size_t index) {
   bytes.data = bytes.data.first(buffer.byte_length);
   bytes.loaded = true;
   return bytes.data;
+}
+
+uint64_t GltfData::bytesOfUris() const {
+  uint64_t bytes = 0;
+  for (const Bytes& buffer : buffers_) bytes += buffer.own.size();
+  return bytes;
 }
 
 std::span<const uint8_t> GltfData::part(size_t index, uint64_t offset, uint64_t length,

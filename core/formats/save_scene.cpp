@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/base/error.h"
+#include "core/formats/glb_bytes.h"
 #include "core/formats/obj_text.h"
 #include "core/formats/scene_builder.h"
 #include "core/io/file_io.h"
@@ -104,26 +105,6 @@ json gltfDocument(const Scene& scene, uint64_t position_bytes, uint64_t triangle
   return document;
 }
 
-void writeGlb(const Scene& scene, OutputFile& output, const std::string& name) {
-  const uint64_t position_bytes = scene.positions.size() * sizeof(glm::vec3);
-  const uint64_t triangle_bytes = scene.triangles.size() * sizeof(glm::uvec3);
-  std::string text = gltfDocument(scene, position_bytes, triangle_bytes).dump();
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const uint64_t bin_bytes = position_bytes + triangle_bytes;  // a multiple of 4
-  const uint64_t total = 12 + 8 + text.size() + 8 + bin_bytes;
-  if (total > 0xffffffffull) {
-    throw Error(
-        fmt::format("{}: needs {} bytes, but a GLB holds less than 4 GiB; write .obj instead", name, total));
-  }
-  const uint32_t header[5] = {0x46546c67, 2, uint32_t(total), uint32_t(text.size()), 0x4e4f534a};
-  const uint32_t bin_header[2] = {uint32_t(bin_bytes), 0x004e4942};
-  output.write(header, sizeof(header));
-  output.write(text);
-  output.write(bin_header, sizeof(bin_header));
-  output.write(scene.positions.data(), position_bytes);
-  output.write(scene.triangles.data(), triangle_bytes);
-}
-
 /// The names must come back as they are.
 void checkWritable(const Scene& scene, const std::string& file) {
   if (scene.triangles.empty()) throw Error(fmt::format("{}: the scene holds no triangles", file));
@@ -160,6 +141,30 @@ void writeObj(const Scene& scene, const std::string& name, const WriteText& writ
   writer.flush();
 }
 
+void writeGlb(const Scene& scene, const std::string& name, const WriteText& write) {
+  checkWritable(scene, name);
+  const uint64_t position_bytes = scene.positions.size() * sizeof(glm::vec3);
+  const uint64_t triangle_bytes = scene.triangles.size() * sizeof(glm::uvec3);
+  std::string text = gltfDocument(scene, position_bytes, triangle_bytes).dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const uint64_t bin_bytes = position_bytes + triangle_bytes;  // a multiple of 4
+  const uint64_t total = 12 + 8 + text.size() + 8 + bin_bytes;
+  if (total > 0xffffffffull) {
+    throw Error(
+        fmt::format("{}: needs {} bytes, but a GLB holds less than 4 GiB; write .obj instead", name, total));
+  }
+  const uint32_t header[5] = {0x46546c67, 2, uint32_t(total), uint32_t(text.size()), 0x4e4f534a};
+  const uint32_t bin_header[2] = {uint32_t(bin_bytes), 0x004e4942};
+  const auto writeBytes = [&](const void* bytes, uint64_t size) {
+    write({static_cast<const char*>(bytes), size});
+  };
+  writeBytes(header, sizeof(header));
+  write(text);
+  writeBytes(bin_header, sizeof(bin_header));
+  writeBytes(scene.positions.data(), position_bytes);
+  writeBytes(scene.triangles.data(), triangle_bytes);
+}
+
 void saveScene(const Scene& scene, const std::filesystem::path& file) {
   const std::string name = file.string();
   const std::string extension = lowerExtension(file);
@@ -168,11 +173,8 @@ void saveScene(const Scene& scene, const std::filesystem::path& file) {
   }
   checkWritable(scene, name);
   OutputFile output(file);
-  if (extension == ".obj") {
-    writeObj(scene, name, [&output](std::string_view piece) { output.write(piece); });
-  } else {
-    writeGlb(scene, output, name);
-  }
+  (extension == ".obj" ? writeObj : writeGlb)(scene, name,
+                                              [&output](std::string_view piece) { output.write(piece); });
   output.commit();
 }
 

@@ -8,7 +8,6 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/formats/triangulate.h"
 #include "core/scene/precision_warning.h"
 #include "core/scene/triangle_area.h"
 
@@ -152,7 +151,8 @@ void SceneBuilder::addPolygon(std::span<const int64_t> corners, const VertexRang
   corners_.clear();
   cut_.clear();
   for (size_t i = 0; i < corners.size(); ++i) corners_.push_back(scene_.positions[vertex(i)]);
-  if (!triangulate(corners_, cut_)) {
+  cut_tests_left_ += kCutTestsACorner * corners.size();
+  if (!triangulate(corners_, cut_, cut_tests_left_)) {
     throw Error(
         fmt::format("{}: concave face of {} corners is too much (at most {}, not too entangled); split it",
                     place(), corners.size(), kMaxConcaveCorners));

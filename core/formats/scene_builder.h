@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/formats/load_scene.h"
+#include "core/formats/triangulate.h"
 #include "core/scene/scene.h"
 
 namespace sightline {
@@ -53,7 +54,8 @@ class SceneBuilder {
   void countGlass(uint64_t triangles) { scene_.glass_triangles += triangles; }
   void countSingleSided(uint64_t triangles) { scene_.single_sided_triangles += triangles; }
   void countHiddenNodes(uint64_t nodes) { scene_.hidden_nodes += nodes; }
-  void warn(std::string line) { scene_.warnings.push_back(std::move(line)); }
+  /// What it names of the file is cleaned (cleanName): reports take UTF-8 only.
+  void warn(std::string_view line) { scene_.warnings.push_back(cleanName(line)); }
   uint64_t triangleCount() const { return scene_.triangles.size(); }
 
   /// Room for so many more, to avoid copies.
@@ -77,6 +79,7 @@ class SceneBuilder {
       remainders_;                  ///< what positions lost by rounding; shorter if the others lost nothing
   std::vector<glm::vec3> corners_;  ///< of the polygon in work
   std::vector<glm::uvec3> cut_;
+  uint64_t cut_tests_left_ = kMaxCutTests;
 };
 
 }  // namespace sightline

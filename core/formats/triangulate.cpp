@@ -4,6 +4,7 @@
 // corner is cut all the same, so that the number of triangles is always n - 2.
 #include "core/formats/triangulate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -52,11 +53,13 @@ void appendFan(size_t n, std::vector<glm::uvec3>& triangles) {
   for (uint32_t i = 1; i + 1 < n; ++i) triangles.emplace_back(0, i, i + 1);
 }
 
-/// Cuts ears off the outline; `ring` holds the corners that are left. Usual outlines take a few n * n tests
-/// of a corner against an ear; long spirals, which offer an ear at a time only, come near n * n * n.
+/// Cuts ears off the outline; `ring` holds the corners that are left. That takes a few n * n tests of a
+/// corner against an ear, since what was found to lie in a corner's triangle is tried first the next time;
+/// outlines made to spoil that come near n * n * n.
 class EarClipper {
  public:
-  explicit EarClipper(const std::vector<glm::dvec2>& points) : points_(points), ring_(points.size()) {
+  EarClipper(const std::vector<glm::dvec2>& points, uint64_t& tests_left)
+      : points_(points), ring_(points.size()), inside_(points.size(), kNothing), tests_left_(tests_left) {
     std::iota(ring_.begin(), ring_.end(), 0u);
   }
 
@@ -66,9 +69,10 @@ class EarClipper {
     while (ring_.size() > 3) {
       const size_t ear = findEar(candidate % ring_.size());
       triangles.emplace_back(before(ear), ring_[ear], after(ear));
+      inside_[ring_[ear]] = kGone;
       ring_.erase(ring_.begin() + std::ptrdiff_t(ear));
       candidate = ear;
-      if (tests_ > kMaxTests) return false;
+      if (tests_left_ == 0) return false;
     }
     triangles.emplace_back(ring_[0], ring_[1], ring_[2]);
     return true;
@@ -83,7 +87,7 @@ class EarClipper {
     size_t convex = n;
     for (size_t step = 0; step < n; ++step) {
       const size_t i = (start + step) % n;
-      ++tests_;
+      countTest();
       if (turn(points_[before(i)], points_[ring_[i]], points_[after(i)]) <= 0.0) continue;
       if (isEmpty(i)) return i;
       if (convex == n) convex = i;
@@ -97,24 +101,34 @@ class EarClipper {
     const glm::dvec2& a = points_[before(i)];
     const glm::dvec2& b = points_[ring_[i]];
     const glm::dvec2& c = points_[after(i)];
-    for (const uint32_t other : ring_) {
-      ++tests_;
+    const auto lies_inside = [&](uint32_t other) {
+      countTest();
       const glm::dvec2& p = points_[other];
-      if (p == a || p == b || p == c) continue;
-      if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return false;
-    }
-    return true;
+      if (p == a || p == b || p == c) return false;
+      return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+    };
+    uint32_t& known = inside_[ring_[i]];
+    if (known != kNothing && inside_[known] != kGone && lies_inside(known)) return false;
+    const auto found = std::find_if(ring_.begin(), ring_.end(), lies_inside);
+    known = found == ring_.end() ? kNothing : *found;
+    return found == ring_.end();
   }
 
-  static constexpr uint64_t kMaxTests = 300'000'000;  ///< about a second
+  void countTest() { tests_left_ -= tests_left_ == 0 ? 0 : 1; }
+
+  static constexpr uint32_t kNothing = 0xffffffff;
+  static constexpr uint32_t kGone = 0xfffffffe;
   const std::vector<glm::dvec2>& points_;
   std::vector<uint32_t> ring_;
-  uint64_t tests_ = 0;
+  std::vector<uint32_t> inside_;  ///< by corner: another that lay in its triangle when last tested, kNothing,
+                                  ///< or kGone if it was cut off
+  uint64_t& tests_left_;
 };
 
 }  // namespace
 
-bool triangulate(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles) {
+bool triangulate(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& triangles,
+                 uint64_t& tests_left) {
   if (corners.size() == 3) {
     triangles.emplace_back(0, 1, 2);
     return true;
@@ -131,7 +145,7 @@ bool triangulate(std::span<const glm::vec3> corners, std::vector<glm::uvec3>& tr
   }
   if (corners.size() > kMaxConcaveCorners) return false;
   const size_t before = triangles.size();
-  if (EarClipper(points).run(triangles)) return true;
+  if (EarClipper(points, tests_left).run(triangles)) return true;
   triangles.resize(before);
   return false;
 }

@@ -3,7 +3,7 @@
 //
 //     x ^  houses ##### ##### #####    facade at kFacade
 //       |  terraces  o  o   o  o       from kKerb
-//       |  street ------------------> z, free space for cells: |x| < kFreeLane up to kFreeHeight
+//       |  street ------------------> z, free space for cells: |x| < 2.6 m up to kFreeHeight
 //       |  terraces  o  o   o  o
 //          houses ##### ##### #####    and one across each end
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace sightline {
 namespace {
 
-constexpr float kFreeLane = 2.6f, kFreeHeight = 4.8f;
+constexpr float kFreeHeight = 4.8f;
 constexpr float kKerb = 3.0f, kKerbHeight = 0.12f, kFacade = 7.2f;
 constexpr float kLot = 12, kHouseDepth = 10;
 constexpr float kEnd = 4;  // from the last lot to the house across the end

@@ -2,7 +2,7 @@
 //
 //        z                      Streets run between and around the blocks. A block is a pavement raised by
 //        ^  | # # # | # # # |   kKerb with two rows of lots; houses stand kPavement inside its edge.
-//        |  | # # # | # # # |   Free space: within kFreeLane of a street's axis up to kFreeHeight, and the
+//        |  | # # # | # # # |   Free space: within 3.2 m of a street's axis up to 7 m, and the
 //        |  +-------+-------+   crossings at any height.
 //        |  | # # # | # # # |
 //        +------------------> x
@@ -19,8 +19,6 @@ namespace {
 
 constexpr float kKerb = 0.15f;
 constexpr float kPavement = 3.6f;
-constexpr float kFreeLane = 3.2f;    // half width
-constexpr float kFreeHeight = 7.0f;  // wires hang above it
 constexpr uint32_t kLotsAlong = 3;
 
 /// A street's extent across it, and of the blocks behind it, along one axis.

@@ -37,8 +37,8 @@ Points placesFrom(double begin, const std::vector<Points>& curves) {
   }
   places.push_back({begin, 0});
   std::ranges::sort(places, {}, &ChartPoint::x);
-  const auto repeated = std::ranges::unique(places, {}, &ChartPoint::x);
-  places.erase(repeated.begin(), repeated.end());
+  const auto same = [](const ChartPoint& a, const ChartPoint& b) { return a.x == b.x; };
+  places.erase(std::unique(places.begin(), places.end(), same), places.end());
   return places;
 }
 

@@ -177,7 +177,10 @@ PvsFile loadPvs(const std::filesystem::path& file) {
 }
 
 PartialPvs loadPartialPvs(const std::filesystem::path& part) {
-  const Bytes bytes = readBytes(part);
+  return parsePartialPvs(readBytes(part), part);
+}
+
+PartialPvs parsePartialPvs(const Bytes& bytes, const std::filesystem::path& part) {
   PartialPvs left;
   if (bytes.size() < kPvsPreludeBytes && beginsAsPvs(bytes)) {  // killed before all of it was there
     left.torn_bytes = bytes.size();

@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -72,6 +73,9 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version);
 IndexedCell readCellPayload(std::span<const uint8_t> payload, const PvsFile& head);
 std::vector<CellCost> readCostPayload(std::span<const uint8_t> payload, const PvsFile& head);
 void checkEndPayload(std::span<const uint8_t> payload, uint32_t cells, uint64_t checksum);
+
+/// A whole file, handed to `put` section by section: each pvs.cells with its device. Throws Error.
+void writePvs(const PvsFile& pvs, const std::function<void(const Bytes&)>& put);
 
 /// A whole file in memory; `file` is for messages. Throws BadPvs.
 PvsFile parsePvs(const Bytes& bytes, const std::filesystem::path& file);

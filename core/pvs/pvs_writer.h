@@ -26,6 +26,9 @@ struct PartialPvs {
 /// it cannot be read.
 PartialPvs loadPartialPvs(const std::filesystem::path& part);
 
+/// The same for a file's content; `part` is its name, for messages.
+PartialPvs parsePartialPvs(const Bytes& bytes, const std::filesystem::path& part);
+
 /// loadPvs, or for a name that ends in ".part" the finished cells of a bake in work. Throws Error.
 PvsFile loadFinishedCells(const std::filesystem::path& file);
 

@@ -5,11 +5,10 @@
 
 namespace sightline {
 
-void savePvs(const PvsFile& pvs, const std::filesystem::path& file) {
-  OutputFile output(file);
+void writePvs(const PvsFile& pvs, const std::function<void(const Bytes&)>& put) {
   Checksum checksum;
   const auto write = [&](const Bytes& bytes) {
-    output.write(bytes.data(), bytes.size());
+    put(bytes);
     checksum.add(bytes);
   };
   write(writePrelude());
@@ -22,6 +21,11 @@ void savePvs(const PvsFile& pvs, const std::filesystem::path& file) {
   }
   write(writeSection(kSectionCost, costs.bytes()));
   write(writeSection(kSectionEnd, writeEndPayload(uint32_t(pvs.cells.size()), checksum.value())));
+}
+
+void savePvs(const PvsFile& pvs, const std::filesystem::path& file) {
+  OutputFile output(file);
+  writePvs(pvs, [&output](const Bytes& bytes) { output.write(bytes.data(), bytes.size()); });
   output.commit();
 }
 

@@ -14,7 +14,8 @@ namespace sightline {
 Bytes encodeSet(std::span<const uint32_t> ids);
 
 /// Undoes encodeSet. Nothing if the bytes are damaged, do not hold exactly `count` ids, or hold one that is
-/// not below `id_limit`. Memory grows with the data found, not with what `count` claims.
+/// not below `id_limit`. Memory grows with the ids found, not with what `count` claims; but a few
+/// bytes can hold a run of all ids below the limit.
 std::optional<std::vector<uint32_t>> decodeSet(std::span<const uint8_t> bytes, uint64_t count,
                                                uint64_t id_limit);
 

@@ -84,7 +84,7 @@ std::vector<uint32_t> containedTriangles(const Scene& scene, const Bvh& bvh, con
     return false;
   });
   std::ranges::sort(result);
-  result.erase(std::ranges::unique(result).begin(), result.end());  // spatial splits give some twice
+  result.erase(std::unique(result.begin(), result.end()), result.end());  // spatial splits give some twice
   return result;
 }
 

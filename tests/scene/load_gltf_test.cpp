@@ -485,5 +485,47 @@ TEST(LoadGltf, HugeClaimsTakeNoMemory) {
   EXPECT_EQ(loadError("a.glb", many.glb()), "a.glb: more than 4294967293 vertices or triangles");
 }
 
+TEST(LoadGltf, SmallFilesMakeNoLargeScenes) {
+  // `nodes` place a mesh of `primitives` primitives that hold the same 3,000 triangles.
+  const auto file = [](int nodes, int primitives, const std::string& name) {
+    GltfFile many;
+    const size_t positions = many.addPositions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    const std::string triangles(9'000, '\1');
+    many.addMesh(positions, int64_t(many.addAccessor(many.addView(triangles), 5121, 9'000, "SCALAR")));
+    many.document["meshes"][0]["name"] = name;
+    json& list = many.document["meshes"][0]["primitives"];
+    for (int i = 1; i < primitives; ++i) list.push_back(json(list[0]));
+    many.document["nodes"] = json(size_t(nodes), json{{"mesh", 0}});
+    return many.glb();
+  };
+  const auto isTooMuch = [](const std::string& glb) {
+    return loadError("a.glb", glb).find("a.glb: places its meshes so often that it makes too much of ") == 0;
+  };
+  EXPECT_EQ(loadText("a.glb", file(1000, 1, "m")).triangles.size(), 3'000'000u);
+  EXPECT_TRUE(isTooMuch(file(1000, 10, "m")));                       // 30 million triangles of 20 KB
+  EXPECT_TRUE(isTooMuch(file(600, 300, "m")));                       // too many objects
+  EXPECT_TRUE(isTooMuch(file(200, 100, std::string(20'000, 'm'))));  // 400 MB of names
+}
+
+TEST(LoadGltf, ManyTargetsOfManyVerticesAreTooMuch) {
+  GltfFile file;
+  const size_t positions = file.addAccessor(file.addView(std::string(120'000, '\0')), 5120, 40'000, "VEC3");
+  file.addMesh(positions, -1);
+  json& mesh = file.document["meshes"][0];
+  for (int i = 0; i < 3000; ++i) {
+    mesh["primitives"][0]["targets"].push_back({{"POSITION", positions}});
+    mesh["weights"].push_back(1);
+  }
+  EXPECT_EQ(loadError("a.glb", file.glb()).find("a.glb: places its meshes so often"), 0u);
+}
+
+TEST(LoadGltf, NamesOfFilesHaveNoControlCharacters) {
+  for (const char* uri : {"a%00.bin", "a%0A.bin", "a%1B[2J.bin"}) {
+    EXPECT_EQ(loadError("a.gltf", squareFile<uint8_t>(5121).gltf(uri)),
+              "a.gltf: buffers[0].uri: bad file name")
+        << uri;
+  }
+}
+
 }  // namespace
 }  // namespace sightline

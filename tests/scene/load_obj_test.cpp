@@ -222,6 +222,13 @@ TEST(LoadObj, CountsGlass) {
                                 ": cannot open: No such file or directory; its materials count as opaque"}));
 }
 
+TEST(LoadObj, WarningsAreCleanWhateverTheFileNames) {
+  const Scene scene =
+      loadText("a.obj", "mtllib m\x1b\x80.mtl\n" + std::string(kSquare) + "usemtl a\nf 1 2 3\n");
+  ASSERT_EQ(scene.warnings.size(), 1u);
+  EXPECT_NE(scene.warnings[0].find("/m__.mtl: cannot open"), std::string::npos) << scene.warnings[0];
+}
+
 TEST(LoadObj, MaterialsOutsideTheFolderAreNotRead) {
   const test::Folder folder;
   std::filesystem::create_directories(folder / "scene/sub");

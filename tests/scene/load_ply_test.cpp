@@ -153,5 +153,11 @@ TEST(LoadPly, RepairDropsAndCounts) {
   EXPECT_EQ(scene.repaired_triangles, 3u);
 }
 
+TEST(LoadPly, NamesWithControlCharactersDoNotReachTheTerminal) {
+  EXPECT_EQ(
+      loadError("a.ply", "ply\nformat ascii 1.0\nelement a\x1b[2J\a 1\nproperty int p\x7f\nend_header\n?\n"),
+      "a.ply: element a_[2J_, row 0: property p_: expected a number");
+}
+
 }  // namespace
 }  // namespace sightline

@@ -13,6 +13,12 @@ namespace {
 
 using Triangles = std::vector<glm::uvec3>;
 
+/// With all the tests that a file has.
+bool triangulate(const std::vector<glm::vec3>& corners, Triangles& triangles) {
+  uint64_t tests = kMaxCutTests;
+  return sightline::triangulate(corners, triangles, tests);
+}
+
 Triangles cut(const std::vector<glm::vec3>& corners) {
   Triangles triangles;
   EXPECT_TRUE(triangulate(corners, triangles));
@@ -138,6 +144,34 @@ TEST(Triangulate, LargePolygons) {
   star.pop_back();
   EXPECT_TRUE(triangulate(star, triangles));
   EXPECT_EQ(triangles.size(), star.size() - 2);
+}
+
+/// Turns inward and back out, a step apart: it offers an ear at a time only.
+std::vector<glm::vec3> spiral(int corners) {
+  std::vector<glm::vec3> outline;
+  for (int i = 0; i < corners / 2; ++i)
+    outline.emplace_back((i + 5) * std::cos(i * 0.4), 3, (i + 5) * std::sin(i * 0.4));
+  for (int i = corners / 2 - 1; i >= 0; --i)
+    outline.emplace_back((i + 2) * std::cos(i * 0.4), 3, (i + 2) * std::sin(i * 0.4));
+  return outline;
+}
+
+TEST(Triangulate, EntangledOutlinesTakeQuadraticTime) {
+  for (const uint64_t corners : {500, 2000}) {
+    Triangles triangles;
+    uint64_t tests_left = kMaxCutTests;
+    EXPECT_TRUE(sightline::triangulate(spiral(int(corners)), triangles, tests_left));
+    EXPECT_LT(kMaxCutTests - tests_left, 2 * corners * corners);  // it was over 60 times that
+  }
+}
+
+TEST(Triangulate, ThePolygonsOfAFileShareItsTests) {
+  Triangles triangles;
+  uint64_t tests_left = 250'000;
+  EXPECT_TRUE(sightline::triangulate(spiral(400), triangles, tests_left));
+  EXPECT_LT(tests_left, 150'000u);
+  EXPECT_FALSE(sightline::triangulate(spiral(400), triangles, tests_left));
+  EXPECT_EQ(triangles.size(), 398u);
 }
 
 TEST(Triangulate, ObjAndPlyCutAlike) {

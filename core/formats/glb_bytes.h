@@ -1,0 +1,15 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <string_view>
+
+#include "core/scene/scene.h"
+
+namespace sightline {
+
+/// The scene as a GLB file, handed to `write` in a few pieces; loadScene returns the same positions, triangles
+/// and objects of it, bit for bit. name: of what is written, for errors. Throws Error.
+void writeGlb(const Scene& scene, const std::string& name,
+              const std::function<void(std::string_view)>& write);
+
+}  // namespace sightline

@@ -1,0 +1,7 @@
+#include "core/formats/loaders.h"
+#include "tests/fuzz/check.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  sightline::fuzz::checkScene(sightline::loadPly, ".ply", data, size);
+  return 0;
+}

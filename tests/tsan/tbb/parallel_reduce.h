@@ -1,0 +1,2 @@
+#pragma once
+#include "tests/tsan/plain_threads.h"
