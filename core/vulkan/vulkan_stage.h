@@ -6,14 +6,14 @@
 
 namespace sightline {
 
-/// What all shaders get by push constants (vk_shaders/state.glsl).
+/// What the shaders of stages get by push constants.
 struct VulkanPush {
-  VkDeviceAddress launch;  ///< of the VulkanLaunch
+  VkDeviceAddress launch;  ///< of what the launch is about
   uint32_t first_item;
   uint32_t item_end;
 };
 
-/// The embedded shader of this name. Throws Error.
+/// The shader of this name of the context's program. Throws Error.
 VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name);
 /// Its main function as a stage.
 VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderModule module);
@@ -25,13 +25,16 @@ void destroyPipeline(const VulkanContext& context, VkPipeline pipeline);
 class VulkanStage {
  public:
   VulkanStage() = default;
-  /// A tracing stage (trace_random, ...) of the context's kind. group_size: of ray queries.
-  static VulkanStage tracing(const VulkanContext& context, const std::string& name, uint32_t group_size);
-  /// A compute shader ("count_bits") with groups of 64.
+  /// A compute shader ("count_bits.comp"). group_size: work items, its constant 0.
+  static VulkanStage compute(const VulkanContext& context, const std::string& name, uint32_t group_size);
+  /// The same of shader "NAME.comp" with groups of 64.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
+  /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each.
+  static VulkanStage rays(const VulkanContext& context, const std::string& generation,
+                          const std::string& miss, const std::string& hit);
 
   /// Records the dispatch of the items 0 .. count - 1, in pieces that the device takes.
-  /// launch: address of the VulkanLaunch.
+  /// launch: of VulkanPush.
   void record(VkCommandBuffer commands, VkDeviceAddress launch, uint32_t count) const;
 
  private:
@@ -40,7 +43,7 @@ class VulkanStage {
     layout_ = pushLayout(*context_, stages);
   }
   void createPipeline(const std::string& name, uint32_t group_size);
-  void createRayPipeline(const std::string& name);
+  void createRayPipeline(const std::string& generation, const std::string& miss, const std::string& hit);
 
   const VulkanContext* context_ = nullptr;
   VkShaderStageFlags stages_ = 0;

@@ -4,6 +4,7 @@
 #include "core/base/error.h"
 #include "core/device/opencl/opencl_scene.h"
 #include "core/device/opencl/opencl_set.h"
+#include "core/device/vulkan/tracing_needs.h"
 #include "core/device/vulkan/vulkan_set.h"
 #include "tests/support/vulkan.h"
 
@@ -17,7 +18,7 @@ constexpr uint32_t kTriangles = 1000;
 TEST(OpenClSetTest, AnArrayDoesNotGrow) {
   if (listOpenClDevices().empty()) GTEST_SKIP() << "no OpenCL device";
   OpenClContext context("opencl");
-  context.build(traceOptions(1));
+  buildKernels(context, 1);
   const ClBuffer overflow = context.buffer(4, "overflow");
   context.fill(overflow, 1, 4);
   OpenClSet set(context, overflow, kTriangles, false);
@@ -33,7 +34,7 @@ TEST(OpenClSetTest, AnArrayDoesNotGrow) {
 
 TEST(VulkanSetTest, AnArrayDoesNotGrow) {
   SL_SKIP_WITHOUT_VULKAN();
-  const VulkanContext context("vulkan", false);
+  const VulkanContext context("vulkan", tracingNeeds(false));
   VulkanRunner runner(context);
   VulkanSet set(context, runner, kTriangles, false);
   const uint64_t winner = runner.launch.winner, bytes = context.allocatedBytes();
@@ -47,7 +48,7 @@ TEST(VulkanSetTest, AnArrayDoesNotGrow) {
 TEST(OpenClSetTest, GrowingPastTheLargestTableIsAnError) {
   if (listOpenClDevices().empty()) GTEST_SKIP() << "no OpenCL device";
   OpenClContext context("opencl");
-  context.build(traceOptions(1));
+  buildKernels(context, 1);
   const ClBuffer overflow = context.buffer(4, "overflow");
   context.fill(overflow, 0, 4);
   OpenClSet set(context, overflow, kTriangles, true);
@@ -59,7 +60,7 @@ TEST(OpenClSetTest, GrowingPastTheLargestTableIsAnError) {
 
 TEST(VulkanSetTest, GrowingPastTheLargestTableIsAnError) {
   SL_SKIP_WITHOUT_VULKAN();
-  const VulkanContext context("vulkan", false);
+  const VulkanContext context("vulkan", tracingNeeds(false));
   VulkanRunner runner(context);
   VulkanSet set(context, runner, kTriangles, true);
   const uint32_t capacity = set.capacity();

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/device/vulkan/tracing_needs.h"
 #include "core/device/vulkan/vulkan_runner.h"
 #include "core/device/vulkan/vulkan_scene.h"
 #include "core/sampling/random_segment.h"
@@ -13,11 +14,11 @@ namespace sightline {
 class VulkanTracer {
  public:
   VulkanTracer(const std::string& device, const Scene& scene, const Bvh& bvh, uvec4 shifts)
-      : context_(device, false),
+      : context_(device, tracingNeeds(false)),
         runner_(context_),
         scene_(uploadVulkanScene(context_, scene, bvh, 0)),
-        slots_stage_(VulkanStage::tracing(context_, "trace_slots", 64)),
-        rays_stage_(VulkanStage::tracing(context_, "trace_rays", 64)) {
+        slots_stage_(tracingStage(context_, "trace_slots", 64)),
+        rays_stage_(tracingStage(context_, "trace_rays", 64)) {
     scene_.describe(runner_.launch);
     runner_.launch.shifts = shifts;
   }

@@ -43,7 +43,7 @@ class OpenClDevice final : public Device {
         lanes_(options.rays_per_item > 0 ? options.rays_per_item : raysPerItem(context_)),
         triangle_count_(static_cast<uint32_t>(scene.triangles.size())) {
     if (options.memory_budget_bytes > 0) context_.limitMemory(options.memory_budget_bytes);
-    context_.build(traceOptions(lanes_));
+    buildKernels(context_, lanes_);
     // Groups of 64 rays keep the cores of a CPU evenly busy and fill the smallest unit of a GPU.
     local_ = options.work_group_size > 0 ? options.work_group_size : std::max(1u, 64 / lanes_);
     scene_ = uploadScene(context_, scene, bvh, lanes_);

@@ -4,7 +4,9 @@
 #include <optional>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/base/parallel_copy.h"
+#include "core/device/vulkan/tracing_needs.h"
 #include "core/device/vulkan/vulkan_raster.h"
 #include "core/device/vulkan/vulkan_scene.h"
 #include "core/device/vulkan/vulkan_set.h"
@@ -26,10 +28,14 @@ constexpr uint64_t kReadbackBytes = 64u << 20;
 /// Work items of a group with ray queries, if the options name no other.
 constexpr uint32_t kGroup = 64;
 
-class VulkanDevice final : public Device {
+const char* layoutText(bool pipelines) {
+  return pipelines ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
+}
+
+class VulkanDevice final : public Device, private HemicubeDrawer {
  public:
   VulkanDevice(const std::string& selector, const Scene& scene, const Bvh& bvh, const DeviceOptions& options)
-      : context_(selector, options.ray_queries, options.memory_budget_bytes),
+      : context_(selector, tracingNeeds(options.ray_queries), options.memory_budget_bytes),
         runner_(context_),
         launch_(runner_.launch),
         group_(options.work_group_size > 0 ? options.work_group_size : kGroup),
@@ -56,6 +62,7 @@ class VulkanDevice final : public Device {
 
   DeviceInfo info() const override {
     DeviceInfo info = context_.info();
+    info.layout = layoutText(usesPipelines(context_));
     info.driver_tree_parts = static_cast<uint32_t>(scene_.tree.parts.size());
     info.driver_tree_bytes = scene_.tree.bytes;
     info.driver_tree_build_seconds = scene_.tree.build_seconds;
@@ -121,7 +128,7 @@ class VulkanDevice final : public Device {
     traceUntilItFits([&] { runner_.run(tracing(reverse_, "trace_reverse"), total); });
   }
 
-  std::string whyNoRaster() const override { return context_.whyNoRaster(); }
+  HemicubeDrawer& drawer() override { return *this; }
 
   void rasterize(std::span<const ViewFrame> hemicube, uint32_t resolution, float near_distance) override {
     if (!raster_ || raster_->resolution() != resolution) {
@@ -229,7 +236,7 @@ class VulkanDevice final : public Device {
 
   /// The stage, made when it is first needed: drivers take up to a second to compile one.
   const VulkanStage& tracing(std::optional<VulkanStage>& stage, const char* name) {
-    if (!stage) stage = VulkanStage::tracing(context_, name, group_);
+    if (!stage) stage = tracingStage(context_, name, group_);
     return *stage;
   }
 
@@ -395,6 +402,27 @@ class VulkanDevice final : public Device {
 std::unique_ptr<Device> makeVulkanDevice(const std::string& selector, const Scene& scene, const Bvh& bvh,
                                          const DeviceOptions& options) {
   return std::make_unique<VulkanDevice>(selector, scene, bvh, options);
+}
+
+DeviceInfo requireVulkanDevice(const std::string& selector) {
+  return selectVulkanDevice(selector, tracingNeeds(false)).info;
+}
+
+std::vector<DeviceInfo> listVulkanDevices() {
+  std::vector<DeviceInfo> list;
+  try {
+    for (VulkanDeviceChoice& device : findVulkanDevices(tracingNeeds(false))) {
+      device.info.layout = layoutText(device.abilities.features.contains(VulkanFeature::kPipelines));
+      list.push_back(std::move(device.info));
+    }
+  } catch (const Error& error) {
+    DeviceInfo none;
+    none.id = "vulkan";
+    none.name = "none found";
+    none.unusable = error.what();
+    list.push_back(none);
+  }
+  return list;
 }
 
 }  // namespace sightline
