@@ -113,8 +113,9 @@ void OpenClContext::build(const char* source, const std::string& options) {
   checkCl(code, "clCreateProgramWithSource");
   code = clBuildProgram(program_.get(), 1, &device_, options.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS) {
-    throw Error(fmt::format("{} ({}) could not compile the kernels with \"{}\": {} ({})\n{}", info_.id,
-                            info_.name, options, codeName(code), code, buildLog(program_.get(), device_)));
+    throw Error(fmt::format("{} ({}) could not compile the kernels with \"{}\": {} ({})", info_.id,
+                            info_.name, options, codeName(code), code),
+                kExitFailed, buildLog(program_.get(), device_));
   }
 }
 
