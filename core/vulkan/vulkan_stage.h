@@ -27,7 +27,8 @@ class VulkanStage {
   VulkanStage() = default;
   /// A tracing stage (trace_random, ...) of the context's kind. group_size: of ray queries.
   static VulkanStage tracing(const VulkanContext& context, const std::string& name, uint32_t group_size);
-  /// A compute shader ("count_bits") with groups of 64.
+  /// A compute shader ("count_bits") with groups of 64. It is compiled when it is first recorded, since who
+  /// only traces rays needs none of them.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
 
   /// Records the dispatch of the items 0 .. count - 1, in pieces that the device takes.
@@ -39,15 +40,16 @@ class VulkanStage {
     stages_ = stages;
     layout_ = pushLayout(*context_, stages);
   }
-  void createPipeline(const std::string& name, uint32_t group_size);
+  void createPipeline(const std::string& name) const;
   void createRayPipeline(const std::string& name);
 
   const VulkanContext* context_ = nullptr;
   VkShaderStageFlags stages_ = 0;
   uint32_t group_size_ = 0;  ///< 0: ray tracing pipeline
   VulkanHandle<VkPipelineLayout> layout_;
-  VulkanHandle<VkPipeline> pipeline_;
-  VulkanBuffer table_;  ///< shader binding table: ray generation, miss, hit
+  std::string list_name_;                      ///< a list's shader, to be compiled at the first record()
+  mutable VulkanHandle<VkPipeline> pipeline_;  ///< a device's stages are recorded by one thread at a time
+  VulkanBuffer table_;                         ///< shader binding table: ray generation, miss, hit
   VkDeviceAddress table_start_ = 0;
   uint64_t table_stride_ = 0;
 };
