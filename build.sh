@@ -173,7 +173,7 @@ buildTarget() {
 # The ten tests that took longest, by CTest's JUnit file.
 printSlowest() {
   say "the slowest tests, in seconds:"
-  awk -F'"' '/^\t<testcase / { printf "%8.2f  %s\n", $6, $2 }' "$1" | sort -rn | awk 'NR <= 10'
+  awk -F'"' '/^\t<testcase / { sub(/ +# GetParam.*/, "", $2); printf "%8.2f  %s\n", $6, $2 }' "$1" | sort -rn | awk 'NR <= 10'
 }
 
 # Runs ctest and ends with one line of counts: CTest itself does not count what was skipped.
