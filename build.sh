@@ -170,12 +170,20 @@ buildTarget() {
   cmake --build --preset release -j "$(compilersAtOnce)" --target "$1"
 }
 
+# The ten tests that took longest, by CTest's JUnit file.
+printSlowest() {
+  say "the slowest tests, in seconds:"
+  awk -F'"' '/^\t<testcase / { sub(/ +# GetParam.*/, "", $2); printf "%8.2f  %s\n", $6, $2 }' "$1" | sort -rn | awk 'NR <= 10'
+}
+
 # Runs ctest and ends with one line of counts: CTest itself does not count what was skipped.
 runTests() {
   local result=0 junit="$build/tests.xml"
   say "running the tests"
   ctest --preset release -j "$(nproc)" --no-tests=error --output-junit "$junit" "$@" || result=$?
-  [[ ! -f $junit ]] || awk -F'"' '/^\t?(tests|failures|disabled|skipped)=/ { count[$1] = $2 }
+  [[ -f $junit ]] || return "$result"
+  printSlowest "$junit"
+  awk -F'"' '/^\t?(tests|failures|disabled|skipped)=/ { count[$1] = $2 }
     END { failed = count["\tfailures="]; skipped = count["\tskipped="] + count["\tdisabled="]
           printf "== tests: %d passed, %d failed, %d skipped\n",
                  count["\ttests="] - failed - skipped, failed, skipped }' "$junit"

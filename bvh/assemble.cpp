@@ -81,7 +81,7 @@ void setChild(BvhNode2& node, int i, const Box& box, uint32_t child, uint32_t co
 
 void setNoChild(BvhNode2& node, int i) {
   const float most = std::numeric_limits<float>::infinity();
-  setChild(node, i, {splat4(most), splat4(-most)}, 0xffffffffu, 0);
+  setChild(node, i, {splat4(most), splat4(-most)}, kNoChild, 0);
 }
 
 void assemble(std::unique_ptr<TreePart> root, const Measure& measure, Bvh& bvh) {

@@ -9,8 +9,6 @@ namespace sightline {
 
 namespace {
 
-/// Below this share of the scene's largest coordinate an extent counts as none: 1 / extent would overflow.
-constexpr float kNoExtent = 1e-30f;
 /// Just below 1, so that the highest centroid falls into the last bin and not past it.
 constexpr float kJustBelowOne = 0.99999f;
 

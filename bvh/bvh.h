@@ -20,6 +20,9 @@ struct BvhConfig {
   int threads = 0;              ///< 0: all cores. The tree does not depend on it.
 };
 
+/// The child of an empty slot.
+inline constexpr uint32_t kNoChild = 0xffffffffu;
+
 /// Two children a node, with their boxes: for packets of rays and for GPUs. 64 bytes.
 struct BvhNode2 {
   glm::vec4 x;  ///< low and high of child 0, low and high of child 1
@@ -34,7 +37,7 @@ static_assert(sizeof(BvhNode2) == 64);
 struct BvhNode8 {
   float low_x[8], high_x[8], low_y[8], high_y[8], low_z[8], high_z[8];  ///< empty slot: low > high
   uint32_t child[8];                                                    ///< as in BvhNode2
-  uint32_t count[8];  ///< as in BvhNode2; an empty slot has count 0 and child 0xffffffff
+  uint32_t count[8];  ///< as in BvhNode2; an empty slot has count 0 and child kNoChild
 };
 static_assert(sizeof(BvhNode8) == 256);
 

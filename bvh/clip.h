@@ -30,8 +30,6 @@ struct Triangles {
 inline constexpr float kClipError = 0x1p-20f;
 /// The same where products round to multiples of the least positive float.
 inline constexpr float kLeastPad = 4 * std::numeric_limits<float>::denorm_min();
-/// In the scale of Measure: 1 / length would overflow below it, or bins per length.
-inline constexpr float kNoExtent = 1e-30f;
 
 /// A triangle, ready to be cut by planes across one axis.
 class Clipper {

@@ -17,7 +17,6 @@ namespace sightline {
 namespace {
 
 constexpr int kWidth = 8;
-constexpr uint32_t kNone = 0xffffffffu;
 /// Subtrees of at most so many binary nodes are handled by one thread.
 constexpr uint32_t kPieceNodes = 4096;
 
@@ -91,7 +90,7 @@ class Collapse {
     const BvhNode2& n = bvh_.nodes2[node];
     Costs cost[2] = {};  // a leaf costs nothing here
     const auto chooseChild = [&](int i) {
-      if (n.count[i] || n.child[i] == kNone) return;
+      if (n.count[i] || n.child[i] == kNoChild) return;
       const uint32_t child_end = i == 0 && isInner(n, 1) ? n.child[1] : end;
       cost[i] = choose(n.child[i], child_end, measure_.halfArea(boxOf(n, i)));
     };
@@ -104,7 +103,7 @@ class Collapse {
     return combine(cost[0], cost[1], area, choice_[node]);
   }
 
-  static bool isInner(const BvhNode2& n, int i) { return n.count[i] == 0 && n.child[i] != kNone; }
+  static bool isInner(const BvhNode2& n, int i) { return n.count[i] == 0 && n.child[i] != kNoChild; }
 
   static Costs combine(const Costs& a, const Costs& b, float area, Choice& choice) {
     Costs cost;
@@ -137,7 +136,7 @@ class Collapse {
       const uint32_t child_end = i == 0 && isInner(n, 1) ? n.child[1] : end;
       if (isInner(n, i) && choice_[n.child[i]][share - 1]) {
         gather(n.child[i], child_end, share, slots);
-      } else if (n.child[i] != kNone) {
+      } else if (n.child[i] != kNoChild) {
         slots.slot[slots.count++] = {node, i, child_end};
       }
     }
@@ -152,7 +151,7 @@ class Collapse {
     for (int i = 0; i < kWidth; ++i) {
       if (i >= slots.count) {
         const float most = std::numeric_limits<float>::infinity();
-        setSlot(wide, i, {splat4(most), splat4(-most)}, kNone, 0);
+        setSlot(wide, i, {splat4(most), splat4(-most)}, kNoChild, 0);
         continue;
       }
       const BvhNode2& n = bvh_.nodes2[slots.slot[i].node];
@@ -187,7 +186,7 @@ class Collapse {
     for (const BvhNode8& from : part.nodes) {
       *to = from;
       for (int i = 0; i < kWidth; ++i) {
-        if (from.count[i] || from.child[i] == kNone) continue;
+        if (from.count[i] || from.child[i] == kNoChild) continue;
         to->child[i] = part.piece ? part.first + from.child[i] : parts_[from.child[i]].first;
       }
       ++to;

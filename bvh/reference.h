@@ -52,4 +52,7 @@ struct Measure {
   }
 };
 
+/// In the scale of Measure: 1 / length would overflow below it, or bins per length.
+inline constexpr float kNoExtent = 1e-30f;
+
 }  // namespace sightline

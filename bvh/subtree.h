@@ -23,7 +23,7 @@ struct TreePart {
 };
 
 void setChild(BvhNode2& node, int i, const Box& box, uint32_t child, uint32_t count);
-/// Marks a child as absent: low > high, child 0xffffffff, count 0.
+/// Marks a child as absent: low > high, child kNoChild, count 0.
 void setNoChild(BvhNode2& node, int i);
 
 /// Puts the parts together depth first into nodes2, references, depth, sah_cost and bounds. Frees them.

@@ -10,8 +10,6 @@ namespace sightline {
 
 namespace {
 
-constexpr uint32_t kNone = 0xffffffffu;
-
 using Bounds3 = CoverageBox;
 
 bool isEmpty(const Bounds3& b) {
@@ -31,15 +29,15 @@ Bounds3 unite(const Bounds3& a, const Bounds3& b) {
   return {glm::min(a.low, b.low), glm::max(a.high, b.high)};
 }
 
-Bounds3 boxOf(const BvhNode2& n, int i) {
+Bounds3 boundsOf(const BvhNode2& n, int i) {
   const int l = 2 * i, h = l + 1;
   return {{n.x[l], n.y[l], n.z[l]}, {n.x[h], n.y[h], n.z[h]}};
 }
-Bounds3 boxOf(const BvhNode8& n, int i) {
+Bounds3 boundsOf(const BvhNode8& n, int i) {
   return {{n.low_x[i], n.low_y[i], n.low_z[i]}, {n.high_x[i], n.high_y[i], n.high_z[i]}};
 }
 template <typename Node>
-constexpr int kWidth = sizeof(Node::child) / sizeof(uint32_t);
+constexpr int kChildren = sizeof(Node::child) / sizeof(uint32_t);
 
 /// What a walk found for the leaf that starts at a reference.
 struct Leaf {
@@ -106,9 +104,9 @@ class Walker {
     const Node& node = nodes_[e.node];
     Bounds3 all{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
     walk_.depth = std::max(walk_.depth, e.depth);
-    for (int i = 0; i < kWidth<Node>; ++i) {
-      const Bounds3 box = boxOf(node, i);
-      if (node.child[i] == kNone) {
+    for (int i = 0; i < kChildren<Node>; ++i) {
+      const Bounds3 box = boundsOf(node, i);
+      if (node.child[i] == kNoChild) {
         if (node.count[i] != 0 || !isEmpty(box)) fail(e.node, i, "is empty but has a count or a box");
         continue;
       }

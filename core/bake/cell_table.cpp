@@ -9,13 +9,8 @@
 namespace sightline {
 namespace {
 
-/// Characters of UTF-8 text, so that names with accents do not break the columns.
-size_t width(const std::string& text) {
-  return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
-}
-
 std::string padded(const std::string& text, size_t columns) {
-  return text + std::string(columns - std::min(columns, width(text)), ' ');
+  return text + std::string(columns - std::min(columns, textWidth(text)), ' ');
 }
 
 std::string missingText(const CellSummary& cell) {
@@ -36,7 +31,7 @@ std::string verdictNames(std::span<const CellWarning> warnings) {
 std::string cellTable(std::span<const CellSummary> cells, uint32_t triangle_count,
                       std::span<const std::vector<CellWarning>> warnings) {
   size_t name_width = 4;
-  for (const CellSummary& cell : cells) name_width = std::max(name_width, width(cell.cell.name));
+  for (const CellSummary& cell : cells) name_width = std::max(name_width, textWidth(cell.cell.name));
   std::string table = padded("cell", name_width) +
                       "   triangles    share      rays  Mrays/s  iterations  missing rays (95 %)   seconds\n";
   for (size_t i = 0; i < cells.size(); ++i) {

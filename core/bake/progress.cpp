@@ -31,17 +31,13 @@ std::string cut(const std::string& text, uint32_t columns) {
   return text;
 }
 
-size_t width(const std::string& text) {
-  return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
-}
-
 /// The line with single instead of double blanks, and with a shorter name if that is not enough.
 std::string tighten(std::string line, const std::string& name, uint32_t columns) {
   for (size_t at = line.find("  ", name.size()); at != std::string::npos; at = line.find("  ", at)) {
     line.erase(at, 1);
   }
-  const size_t excess = width(line) - std::min<size_t>(width(line), columns);
-  const size_t name_width = width(name);
+  const size_t excess = textWidth(line) - std::min<size_t>(textWidth(line), columns);
+  const size_t name_width = textWidth(name);
   if (excess == 0 || name_width <= kShortestName) return line;
   const size_t kept = std::max(kShortestName, name_width - std::min(name_width, excess + 1));
   return cut(name, uint32_t(kept)) + "~" + line.substr(name.size());
@@ -50,11 +46,12 @@ std::string tighten(std::string line, const std::string& name, uint32_t columns)
 /// Makes the line fit: tightens it, then leaves out its last fields, which double blanks part: a number cut
 /// in two would be another one. The name is the line's beginning.
 std::string fit(std::string line, const std::string& name, uint32_t columns) {
-  if (width(line) <= columns) return line;
+  if (textWidth(line) <= columns) return line;
   for (;;) {
     const std::string text = tighten(line, name, columns);
     const size_t last = line.rfind("  ");
-    if (width(text) <= columns || last == std::string::npos || last < name.size()) return cut(text, columns);
+    if (textWidth(text) <= columns || last == std::string::npos || last < name.size())
+      return cut(text, columns);
     line.erase(last);
   }
 }

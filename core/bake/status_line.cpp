@@ -7,13 +7,13 @@
 namespace sightline {
 namespace {
 
-constexpr std::chrono::milliseconds kTerminalInterval{100}, kPlainInterval{5000};
+constexpr std::chrono::milliseconds kRewriteInterval{100}, kLineInterval{5000};
 
 }  // namespace
 
 void StatusLine::write(const std::string& line) {
   const bool terminal = terminalColumns(stdout) > 0;
-  next_ = std::chrono::steady_clock::now() + (terminal ? kTerminalInterval : kPlainInterval);
+  next_ = std::chrono::steady_clock::now() + (terminal ? kRewriteInterval : kLineInterval);
   std::fputs((terminal ? "\r" + line + "\x1b[K" : line + "\n").c_str(), stdout);
   std::fflush(stdout);
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace sightline {
@@ -30,6 +31,10 @@ std::string shortDuration(double seconds) {
 
 std::string hashText(uint64_t hash) {
   return fmt::format("{:016x}", hash);
+}
+
+size_t textWidth(std::string_view text) {
+  return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
 }
 
 }  // namespace sightline

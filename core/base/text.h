@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 // Numbers for people.
 namespace sightline {
@@ -14,5 +15,8 @@ std::string shortDuration(double seconds);
 
 /// 16 hexadecimal digits.
 std::string hashText(uint64_t hash);
+
+/// Characters of UTF-8 text, so that names with accents do not break columns.
+size_t textWidth(std::string_view text);
 
 }  // namespace sightline

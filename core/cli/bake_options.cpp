@@ -150,7 +150,7 @@ void declareMachine(CLI::App& command, std::string& device, DeviceOptions& optio
                          "slower build, faster rays in scenes of long triangles"));
 }
 
-constexpr const char* kFooter =
+constexpr const char* kBakeFooter =
     "Examples:\n"
     "  sightline bake city.glb --cells cells.json -o city.pvs\n"
     "  sightline bake city.glb --cells cells.json -o quick.pvs \\\n"
@@ -196,7 +196,7 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
   declareMethod(command, options.params);
   declareSampling(command, options.params);
   declareLimits(command, options.params);
-  command.footer(kFooter);
+  command.footer(kBakeFooter);
 }
 
 }  // namespace sightline

@@ -210,7 +210,7 @@ void run(const CellsArguments& arguments) {
   fmt::print("{}: {} view cells\n", arguments.output.string(), cells.size());
 }
 
-constexpr const char* kFooter =
+constexpr const char* kCellsFooter =
     "Lengths are in the scene's units, y is up.\n\n"
     "A box of the grid is kept if no triangle reaches into it, something is straight\n"
     "below its centre, and it is not inside of something solid: at least half of the\n"
@@ -288,7 +288,7 @@ void addCellsCommand(CLI::App& app) {
                       "(default: a hundredth of their smallest extent)");
   declareGrid(*command, *a);
   declarePath(*command, *a);
-  command->footer(kFooter);
+  command->footer(kCellsFooter);
   command->callback([a] { run(*a); });
 }
 

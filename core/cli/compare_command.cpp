@@ -195,7 +195,7 @@ void declareComparison(CLI::App& command, CompareCommand& options) {
   declareViews(command, options.views);
 }
 
-constexpr const char* kFooter =
+constexpr const char* kCompareFooter =
     "Example:\n"
     "  sightline compare city.glb --cells cells.json --methods gvs++,random \\\n"
     "      --rays 2M --n-rand 500k --views 20 --html methods.html\n";
@@ -211,7 +211,7 @@ void addCompareCommand(CLI::App& app) {
   declareComparison(*command, *options);
   declareMachine(*command, options->device, options->device_options, options->spatial_splits);
   declareSampling(*command, options->options.params);
-  command->footer(kFooter);
+  command->footer(kCompareFooter);
   command->callback([command, options] {
     CompareOptions& compare = options->options;
     if (command->count("--rays") + command->count("--seconds") == 0) {

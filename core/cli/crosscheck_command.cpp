@@ -232,7 +232,7 @@ void declareLimits(CLI::App& command, CrosscheckLimits& limits) {
       ->type_name("X");
 }
 
-constexpr const char* kFooter =
+constexpr const char* kCrosscheckFooter =
     "Examples:\n"
     "  sightline crosscheck city.glb --cells cells.json --devices cpu,opencl\n"
     "  sightline crosscheck city.glb --cells cells.json --devices cpu,opencl \\\n"
@@ -301,7 +301,7 @@ void addCrosscheckCommand(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   declareLimits(*command, options->limits);
-  command->footer(kFooter);
+  command->footer(kCrosscheckFooter);
   command->callback([options] {
     requireDistinct("--devices", options->devices);
     requireDistinct("--kinds", options->kinds);

@@ -272,7 +272,7 @@ void declareMeasure(CLI::App& command, MeasureCommand& options) {
       ->group("Limits of any one cell and file (else exit code 3)");
 }
 
-constexpr const char* kFooter =
+constexpr const char* kMeasureFooter =
     "Examples:\n"
     "  sightline measure city.glb city.pvs\n"
     "  sightline measure city.glb city.pvs --cell 0 --views 50 --pictures worst \\\n"
@@ -286,7 +286,7 @@ void addMeasureCommand(CLI::App& app) {
   const auto options = std::make_shared<MeasureCommand>();
   declareFiles(*command, *options);
   declareMeasure(*command, *options);
-  command->footer(kFooter);
+  command->footer(kMeasureFooter);
   command->callback([options] { run(*options); });
 }
 

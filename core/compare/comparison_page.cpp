@@ -107,7 +107,7 @@ void addCellCharts(HtmlReport& html, const ComparisonReport& report) {
 }
 
 /// Parameters that all methods share: of a method, and of the rays after a bake, there is none.
-std::vector<ReportFact> sharedParameters(const BakeParams& params) {
+std::vector<ReportFact> sharedFacts(const BakeParams& params) {
   std::vector<ReportFact> facts = parameterFacts(params);
   std::erase_if(facts,
                 [](const ReportFact& f) { return f.first == "method" || f.first == "validation rays"; });
@@ -145,7 +145,7 @@ HtmlReport comparisonPage(const ComparisonReport& report) {
   addErrorCharts(html, points);
   addCellCharts(html, report);
   html.section("Parameters");
-  html.facts(sharedParameters(options.params));
+  html.facts(sharedFacts(options.params));
   html.repeat({.command = report.command,
                .seed = std::to_string(options.seed),
                .device = report.device.id + ", " + report.device.name,

@@ -10,7 +10,6 @@
 namespace sightline {
 namespace {
 
-constexpr Verdict kAllVerdicts[] = {Verdict::kRight, Verdict::kRounded, Verdict::kMissed, Verdict::kWrong};
 /// Answers of each device that the table shows in full; the JSON has them all.
 constexpr size_t kShownRays = 3;
 

@@ -13,8 +13,6 @@
 namespace sightline {
 namespace {
 
-constexpr Verdict kAllVerdicts[] = {Verdict::kRight, Verdict::kRounded, Verdict::kMissed, Verdict::kWrong};
-
 /// Explains the triangles that are in `with` and not in `without`. found_by: place of the device of `with`.
 void explain(const Judge& judge, const CellPvs& with, const CellPvs& without,
              const std::array<Device*, 2>& devices, uint32_t found_by, const RoundingLimit& limit,
@@ -54,10 +52,6 @@ void findFaults(const Judge& judge, const CellPvs& pvs, uint32_t found_by, PvsDi
     const Fault fault = sight.faultOf(judge.corners(triangle), pvs.witnesses[i]);
     if (fault != Fault::kNone) result.faulty.push_back({triangle, found_by, fault, pvs.witnesses[i]});
   }
-}
-
-Json hexVector(const glm::vec3& v) {
-  return {hexFloat(v.x), hexFloat(v.y), hexFloat(v.z)};
 }
 
 Json toJson(const DisputedTriangle& its, const std::array<std::string, 2>& names) {

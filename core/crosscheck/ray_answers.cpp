@@ -9,13 +9,9 @@
 #include "core/shared/vector.h"
 
 namespace sightline {
-namespace {
-
 Json hexVector(const vec3& v) {
   return {hexFloat(v.x), hexFloat(v.y), hexFloat(v.z)};
 }
-
-}  // namespace
 
 bool RayAnswers::differ() const {
   return std::any_of(hits.begin(), hits.end(),

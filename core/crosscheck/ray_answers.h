@@ -35,6 +35,8 @@ Json answersJson(std::span<const Hit> hits, std::span<const Ruling> rulings,
 /// "triangle 4 at 0x1p+0", "nothing".
 std::string answerText(const Hit& hit);
 std::string exactText(const ExactHit& exact);
+/// ["0x1p+0", "0x0p+0", "-0x1.8p+1"]
+Json hexVector(const vec3& v);
 /// "0x1p+0 0x0p+0 -0x1.8p+1"
 std::string hexText(const vec3& v);
 

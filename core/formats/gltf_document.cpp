@@ -284,8 +284,8 @@ std::vector<size_t> readRoots(const JsonObject& document, const std::vector<Gltf
 
 }  // namespace
 
-GltfDocument readGltfDocument(const nlohmann::json& json, const std::string& file) {
-  const JsonObject document(json, file, "");
+GltfDocument readGltfDocument(const nlohmann::json& root, const std::string& file) {
+  const JsonObject document(root, file, "");
   checkRequirements(document);
   GltfDocument result;
   for (const JsonObject& object : document.objects("buffers")) result.buffers.push_back(readBuffer(object));

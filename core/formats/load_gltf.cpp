@@ -63,9 +63,9 @@ Glb splitGlb(std::string_view bytes, const std::string& name) {
   }
   bytes = bytes.substr(0, length);
   size_t offset = 12;
-  const auto [type, json] = takeChunk(bytes, offset, name);
+  const auto [type, text] = takeChunk(bytes, offset, name);
   if (type != kJson) throw Error(fmt::format("{}: the first chunk is not JSON", name));
-  Glb glb{json, {}};
+  Glb glb{text, {}};
   while (offset < bytes.size()) {
     const auto [next_type, next] = takeChunk(bytes, offset, name);
     if (next_type == kBin && glb.bin.data() == nullptr) glb.bin = next;
@@ -303,10 +303,10 @@ class GltfLoader {
   uint64_t unbound_ = 0;  ///< primitives of skinned nodes without joints
 };
 
-Scene loadDocument(std::string_view json, std::string_view bin, const std::filesystem::path& file,
+Scene loadDocument(std::string_view text, std::string_view bin, const std::filesystem::path& file,
                    const SceneLoadOptions& options) {
   const std::string name = file.string();
-  const GltfDocument document = readGltfDocument(parseJson(json, name), name);
+  const GltfDocument document = readGltfDocument(parseJson(text, name), name);
   GltfData data(document, bin, file);
   return GltfLoader(document, json.size() + bin.size(), data, name, options).load();
 }

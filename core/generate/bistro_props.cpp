@@ -9,7 +9,7 @@
 namespace sightline {
 namespace {
 
-uint32_t sidesAt(uint32_t level, uint32_t most = 128) {
+uint32_t propSides(uint32_t level, uint32_t most = 128) {
   return std::min(most, 4 + 2 * level);
 }
 
@@ -37,12 +37,12 @@ void makeTable(MeshBuilder& mesh, uint32_t level) {
   plate.push_back({0.36f, top - 0.005f});
   plate.push_back({0.355f, top});
   plate.push_back({0, top});
-  mesh.lathe(plate, sidesAt(own));
+  mesh.lathe(plate, propSides(own));
   std::vector<LathePoint> stem{{0.22f, 0}, {0.22f, 0.015f}};
   addRound(stem, 0.2f, 0.02f, 0.03f, 0.06f, 1 + own / 3);
   stem.push_back({0.025f, 0.3f});
   stem.push_back({0.03f, top - 0.03f});
-  mesh.lathe(stem, sidesAt(own, 64));
+  mesh.lathe(stem, propSides(own, 64));
 }
 
 void makeChair(MeshBuilder& mesh, uint32_t level) {
@@ -68,7 +68,7 @@ void makeChair(MeshBuilder& mesh, uint32_t level) {
   addRound(seat, 0.2f, -0.01f, 0.215f, 0.01f, 1 + own / 4);
   seat.push_back({0.2f, 0.02f});
   seat.push_back({0, 0.028f});
-  mesh.lathe(seat, sidesAt(own, 64));
+  mesh.lathe(seat, propSides(own, 64));
   mesh.frame = base;
   // Woven back: thin strips.
   const uint32_t strips = std::min(24u, 2 + own / 2);
@@ -81,7 +81,7 @@ void makeChair(MeshBuilder& mesh, uint32_t level) {
 void makeCup(MeshBuilder& mesh, uint32_t level) {
   const uint32_t own = after(4, level);
   if (own == 0) return;
-  const uint32_t sides = sidesAt(own), steps = 1 + own / 2;
+  const uint32_t sides = propSides(own), steps = 1 + own / 2;
   std::vector<LathePoint> saucer{{0, 0.002f}, {0.035f, 0.002f}};
   addRound(saucer, 0.04f, 0.003f, 0.075f, 0.012f, steps);
   saucer.push_back({0.073f, 0.014f});
@@ -109,7 +109,7 @@ void makeCup(MeshBuilder& mesh, uint32_t level) {
 void makeBottle(MeshBuilder& mesh, uint32_t level) {
   const uint32_t own = after(3, level);
   if (own == 0) return;
-  const uint32_t sides = sidesAt(own), steps = 1 + own / 2;
+  const uint32_t sides = propSides(own), steps = 1 + own / 2;
   std::vector<LathePoint> bottle{{0, 0.004f}, {0.034f, 0.002f}, {0.037f, 0.01f}, {0.037f, 0.18f}};
   addRound(bottle, 0.037f, 0.19f, 0.014f, 0.24f, steps);
   for (const LathePoint p : {LathePoint{0.013f, 0.29f}, {0.016f, 0.292f}, {0.016f, 0.305f}, {0, 0.306f}}) {
@@ -135,9 +135,9 @@ void makeTableLamp(MeshBuilder& mesh, uint32_t level) {
   std::vector<LathePoint> foot{{0.05f, 0.001f}, {0.05f, 0.012f}};
   addRound(foot, 0.045f, 0.016f, 0.008f, 0.04f, 1 + own / 3);
   foot.push_back({0.008f, 0.18f});
-  mesh.lathe(foot, sidesAt(own));
+  mesh.lathe(foot, propSides(own));
   const LathePoint shade[] = {{0.085f, 0.14f}, {0.045f, 0.24f}, {0.042f, 0.24f}, {0.082f, 0.14f}};
-  mesh.lathe(shade, sidesAt(own));
+  mesh.lathe(shade, propSides(own));
 }
 
 void makeParasol(MeshBuilder& mesh, uint32_t level) {
@@ -179,7 +179,7 @@ void makePottedPlant(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
                               {0.24f * size, 0.45f},
                               {0.23f * size, 0.4f},
                               {0, 0.4f}};
-  mesh.lathe(pot, sidesAt(own, 64));
+  mesh.lathe(pot, propSides(own, 64));
   const uint32_t leaves = 6 + own * (own + 5), pieces = std::min(12u, 1 + own / 2);
   for (uint32_t k = 0; k < leaves; ++k) {
     // A leaf goes up and out, bends down, and narrows to its tip.
@@ -240,7 +240,7 @@ void makeStringLights(MeshBuilder& mesh, glm::vec3 a, glm::vec3 b, uint32_t leve
     bulb.push_back({0.012f, -0.04f});
     bulb.push_back({0.012f, -0.01f});
     bulb.push_back({0, -0.008f});
-    mesh.lathe(bulb, sidesAt(own, 48));
+    mesh.lathe(bulb, propSides(own, 48));
   }
   mesh.frame = base;
 }

@@ -2,8 +2,8 @@
 // potted plants; parasols, strings of lights above, and balls of thin fibres on plinths.
 //
 //     x ^  houses ##### ##### #####    facade at kFacade
-//       |  terraces  o  o   o  o       from kKerb
-//       |  street ------------------> z, free space for cells: |x| < 2.6 m up to kFreeHeight
+//       |  terraces  o  o   o  o       from kBistroKerb
+//       |  street ------------------> z, free space for cells: |x| < 2.6 m up to kBistroFreeHeight
 //       |  terraces  o  o   o  o
 //          houses ##### ##### #####    and one across each end
 #include <algorithm>
@@ -18,8 +18,8 @@
 namespace sightline {
 namespace {
 
-constexpr float kFreeHeight = 4.8f;
-constexpr float kKerb = 3.0f, kKerbHeight = 0.12f, kFacade = 7.2f;
+constexpr float kBistroFreeHeight = 4.8f;
+constexpr float kBistroKerb = 3.0f, kKerbHeight = 0.12f, kFacade = 7.2f;
 constexpr float kLot = 12, kHouseDepth = 10;
 constexpr float kEnd = 4;  // from the last lot to the house across the end
 constexpr uint32_t kHairballStrands = 60;
@@ -31,7 +31,7 @@ struct BistroLayout {
   float lotStart(uint32_t lot) const { return kLot * float(lot) - length() / 2; }
 };
 
-BistroLayout drawLayout(uint64_t triangles, uint64_t seed) {
+BistroLayout drawBistro(uint64_t triangles, uint64_t seed) {
   return {std::max(2u, uint32_t(0.01f * std::sqrt(float(triangles)) + 0.5f)), seed};
 }
 
@@ -70,7 +70,7 @@ void BistroBuilder::addGround() {
     mesh.patch({-side, 0, reach}, {2 * side, 0, 0}, {0, 0, -2 * reach}, 1 + n / 4, n);
   });
   for (const float s : {-1.0f, 1.0f}) {
-    const float x0 = s < 0 ? -kFacade : kKerb, x1 = s < 0 ? -kKerb : kFacade;
+    const float x0 = s < 0 ? -kFacade : kBistroKerb, x1 = s < 0 ? -kBistroKerb : kFacade;
     add("pavement", Frame{}, [=](MeshBuilder& mesh, uint32_t level) {
       mesh.box({x0, 0, -half}, {x1, kKerbHeight, half}, kNoLowY | kNoHighY);
       const uint32_t along = 1 + level * uint32_t(half / 4), across = 1 + level;
@@ -147,7 +147,7 @@ void BistroBuilder::addTerrace(const Frame& lot, GeneratorRandom& random) {
 
 void BistroBuilder::addLights(uint32_t lot, GeneratorRandom& random) {
   for (const float share : {0.3f, 0.8f}) {
-    const float z = street_.lotStart(lot) + kLot * share, y = kFreeHeight + random.uniform(0.8f, 1.4f);
+    const float z = street_.lotStart(lot) + kLot * share, y = kBistroFreeHeight + random.uniform(0.8f, 1.4f);
     const float slant = random.uniform(-3, 3);
     add("lights", Frame{}, [=](MeshBuilder& mesh, uint32_t level) {
       makeStringLights(mesh, {-kFacade + 0.01f, y, z}, {kFacade - 0.01f, y, z + slant}, level);
@@ -166,8 +166,8 @@ std::vector<ScenePart> BistroBuilder::build() {
     addHouse(Frame{}.at({-kFacade - kHouseDepth, kKerbHeight, z1 - gap}, 0.25f), kLot - gap, kSideHighZ,
              random);
     addHouse(Frame{}.at({kFacade + kHouseDepth, kKerbHeight, z0}, -0.25f), kLot - gap, kSideHighZ, random);
-    const Frame left = Frame{}.at({-kKerb, kKerbHeight, z1}, 0.5f),
-                right = Frame{}.at({kKerb, kKerbHeight, z0});
+    const Frame left = Frame{}.at({-kBistroKerb, kKerbHeight, z1}, 0.5f),
+                right = Frame{}.at({kBistroKerb, kKerbHeight, z0});
     addTerrace(left, random);
     if (hairball) {
       addHairball(right.at({1.7f, 0, kLot / 2}), random);
@@ -185,11 +185,11 @@ std::vector<ScenePart> BistroBuilder::build() {
 }  // namespace
 
 std::vector<ScenePart> bistroParts(uint64_t triangles, uint64_t seed) {
-  return BistroBuilder(drawLayout(triangles, seed)).build();
+  return BistroBuilder(drawBistro(triangles, seed)).build();
 }
 
 std::vector<ViewCell> bistroCells(uint64_t triangles, uint64_t seed) {
-  const BistroLayout street = drawLayout(triangles, seed);
+  const BistroLayout street = drawBistro(triangles, seed);
   const double length = street.length(), half = length / 2;
   const double long_one = std::min(150.0, length - 2);
   return {

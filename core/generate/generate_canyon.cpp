@@ -1,5 +1,5 @@
 // A canyon: a sheet of terrain with overhanging cliffs (canyon_terrain.h), bridges of rock across it, and
-// rocks.h on floor, ledges and plateau. Free space for cells: above the river, within kFreeLane.
+// rocks.h on floor, ledges and plateau. Free space for cells: above the river, within kCanyonFreeLane.
 #include <algorithm>
 #include <cmath>
 #include <memory>
@@ -15,9 +15,9 @@ namespace {
 
 using Terrain = std::shared_ptr<const CanyonTerrain>;
 
-constexpr uint32_t kTile = 64;          // quads along a tile of terrain, each an object
-constexpr float kFreeLane = 0.12f;      // half width without rocks, share of the canyon's
-constexpr double kTerrainShare = 0.62;  // of the triangles
+constexpr uint32_t kTile = 64;            // quads along a tile of terrain, each an object
+constexpr float kCanyonFreeLane = 0.12f;  // half width without rocks, share of the canyon's
+constexpr double kTerrainShare = 0.62;    // of the triangles
 
 Terrain makeTerrain(uint64_t triangles, uint64_t seed) {
   // An extent that grows with the fourth root: half of the growth is area, half is detail.
@@ -60,7 +60,7 @@ void addRock(std::vector<ScenePart>& parts, const Terrain& terrain, uint32_t ind
   do {
     at = mapPoint(*terrain, random.uniform(-0.95f, 0.95f), random.uniform(-0.9f, 0.9f));
     t = terrain->steepness(at);
-  } while (t < kFreeLane + 0.04f && ++tries < 100);
+  } while (t < kCanyonFreeLane + 0.04f && ++tries < 100);
   if (tries == 100) at = mapPoint(*terrain, random.uniform(-0.95f, 0.95f), 0.8f);
   const uint64_t own = random.next();
   const float kind = random.unit(), size = random.unit();
@@ -108,7 +108,7 @@ void addBridges(std::vector<ScenePart>& parts, const Terrain& terrain, uint64_t 
 
 /// A long, narrow box over the river near x, as long as the meander allows (at most `longest`).
 ViewCell riverCell(const CanyonTerrain& terrain, const char* name, double x, double longest) {
-  const double lane = kFreeLane * terrain.width();
+  const double lane = kCanyonFreeLane * terrain.width();
   const double width = std::min(2.5, lane * 0.4), bottom = 0.02 * terrain.depth() + 0.5;
   for (double length = longest;; length *= 0.8) {
     const float x0 = float(x - length / 2), x1 = float(x + length / 2);

@@ -1,7 +1,7 @@
 // A city: blocks of houses in a grid of streets of various widths, with trees, lamps, cars and wires.
 //
 //        z                      Streets run between and around the blocks. A block is a pavement raised by
-//        ^  | # # # | # # # |   kKerb with two rows of lots; houses stand kPavement inside its edge.
+//        ^  | # # # | # # # |   kCityKerb with two rows of lots; houses stand kPavement inside its edge.
 //        |  | # # # | # # # |   Free space: within 3.2 m of a street's axis up to 7 m, and the
 //        |  +-------+-------+   crossings at any height.
 //        |  | # # # | # # # |
@@ -17,7 +17,7 @@
 namespace sightline {
 namespace {
 
-constexpr float kKerb = 0.15f;
+constexpr float kCityKerb = 0.15f;
 constexpr float kPavement = 3.6f;
 constexpr uint32_t kLotsAlong = 3;
 
@@ -51,7 +51,7 @@ Axis drawAxis(GeneratorRandom random, uint32_t blocks, float block_size) {
   return axis;
 }
 
-CityLayout drawLayout(uint64_t triangles, uint64_t seed) {
+CityLayout drawCity(uint64_t triangles, uint64_t seed) {
   // Half of the growth goes into the number of blocks, half into their detail.
   const float blocks = 0.055f * std::sqrt(float(triangles));
   const uint32_t n = std::max(2u, uint32_t(std::sqrt(blocks) + 0.5f));
@@ -74,7 +74,8 @@ void addGround(std::vector<ScenePart>& parts, const CityLayout& city) {
                    16});
   for (uint32_t i = 0; i < x.blocks(); ++i) {
     for (uint32_t j = 0; j < z.blocks(); ++j) {
-      const glm::vec3 low(x.block_low(i), 0, z.block_low(j)), high(x.block_high(i), kKerb, z.block_high(j));
+      const glm::vec3 low(x.block_low(i), 0, z.block_low(j)),
+          high(x.block_high(i), kCityKerb, z.block_high(j));
       parts.push_back({"pavement-" + std::to_string(i) + "-" + std::to_string(j),
                        [low, high](MeshBuilder& mesh, uint32_t level) {
                          mesh.box(low, high, kNoLowY | kNoHighY);
@@ -108,7 +109,7 @@ void addBlock(std::vector<ScenePart>& parts, const CityLayout& city, uint32_t i,
       const float gap = random.uniform(0.6f, 2.4f), court = random.uniform(2.0f, 4.5f);
       spec.width = lot - (k + 1 < kLotsAlong ? gap : 0);
       spec.depth = (z1 - z0) / 2 - court;
-      spec.frame.origin = {x0 + lot * float(k), kKerb, row == 0 ? z0 : z1 - spec.depth};
+      spec.frame.origin = {x0 + lot * float(k), kCityKerb, row == 0 ? z0 : z1 - spec.depth};
       spec.floors = drawFloors(random, from_center);
       spec.floor_height = random.uniform(3.0f, 3.6f);
       spec.street_sides = row == 0 ? kSideLowZ : kSideHighZ;
@@ -142,7 +143,7 @@ void addStreetSide(std::vector<ScenePart>& parts, const Frame& kerb, float lengt
   const float slot = 6.5f;
   for (float at = 4; at + 4 < length; at += slot) {
     const float kind = random.unit();
-    const Frame pavement = kerb.at({-0.9f, kKerb, at});
+    const Frame pavement = kerb.at({-0.9f, kCityKerb, at});
     if (kind < 0.45f) {
       add("tree", pavement, makeTree);
     } else if (kind < 0.75f) {
@@ -206,7 +207,7 @@ void addStreets(std::vector<ScenePart>& parts, const CityLayout& city, uint64_t 
 }  // namespace
 
 std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed) {
-  const CityLayout city = drawLayout(triangles, seed);
+  const CityLayout city = drawCity(triangles, seed);
   std::vector<ScenePart> parts;
   addGround(parts, city);
   for (uint32_t i = 0; i < city.x.blocks(); ++i) {
@@ -217,7 +218,7 @@ std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed) {
 }
 
 std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed) {
-  const CityLayout city = drawLayout(triangles, seed);
+  const CityLayout city = drawCity(triangles, seed);
   const uint32_t n = city.x.blocks(), m = n / 2;
   const double x = city.x.center(m), z = city.z.center(m);  // the crossing of the two avenues
   const double x_length = city.x.end() - city.x.start(), z_length = city.z.end() - city.z.start();

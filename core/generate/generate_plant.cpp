@@ -2,9 +2,9 @@
 //
 //      z ^   +----+  +----+       A bay is kBay wide and has steel columns at its corners, beams and a floor
 //        |   |bay |  |bay |       of gratings above. Free space for cells: in the aisles, kFreeAisle to both
-//        |   +----+  +----+       sides of their middle and up to kFreeHeight above the floor; pipe racks and
-//        |     aisle  kAisle      cable trays run above that. Storage tanks stand beyond the highest x.
-//        |   +----+  +----+
+//        |   +----+  +----+       sides of their middle and up to kPlantFreeHeight above the floor; pipe
+//        racks and |     aisle  kAisle      cable trays run above that. Storage tanks stand beyond the
+//        highest x. |   +----+  +----+
 //        +------------------> x
 #include <algorithm>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace sightline {
 namespace {
 
 constexpr float kBay = 14, kAisle = 4, kPitch = kBay + kAisle, kStorey = 6;
-constexpr float kFreeHeight = 3.2f;
+constexpr float kPlantFreeHeight = 3.2f;
 constexpr float kMargin = 18;   // of the ground around the bays
 constexpr float kClear = 5.2f;  // height for machines and pipes
 constexpr uint32_t kPipesInBay = 40;
@@ -32,7 +32,7 @@ struct PlantLayout {
   static double aisle(uint32_t i) { return double(kPitch) * i + kBay + kAisle / 2; }
 };
 
-PlantLayout drawLayout(uint64_t triangles, uint64_t seed) {
+PlantLayout drawPlant(uint64_t triangles, uint64_t seed) {
   // Bays in all storeys grow with the square root of the count; so does what is in each.
   const float root = std::sqrt(float(triangles));
   const uint32_t storeys = triangles < 20'000 ? 1 : triangles < 400'000 ? 2 : triangles < 8'000'000 ? 3 : 4;
@@ -193,13 +193,13 @@ void PlantBuilder::addAisles(uint32_t i, uint32_t j, uint32_t storey) {
   const bool x_aisle = i + 1 < plant_.nx, z_aisle = j + 1 < plant_.nz;
   if (x_aisle) {
     floor(corner + glm::vec3(kBay, 0, 0), kAisle, kBay);
-    addRack(Frame{}.at(corner + glm::vec3(kBay + kAisle / 2, 0, 0)), kFreeHeight + 0.2f, kPitch, name,
+    addRack(Frame{}.at(corner + glm::vec3(kBay + kAisle / 2, 0, 0)), kPlantFreeHeight + 0.2f, kPitch, name,
             random);
   }
   if (z_aisle) {
     floor(corner + glm::vec3(0, 0, kBay), kBay, kAisle);
-    addRack(Frame{}.at(corner + glm::vec3(0, 0, kBay + kAisle / 2), 0.25f), kFreeHeight + 1.1f, kPitch, name,
-            random);
+    addRack(Frame{}.at(corner + glm::vec3(0, 0, kBay + kAisle / 2), 0.25f), kPlantFreeHeight + 1.1f, kPitch,
+            name, random);
   }
   if (x_aisle && z_aisle) floor(corner + glm::vec3(kBay, 0, kBay), kAisle, kAisle);
 }
@@ -237,11 +237,11 @@ std::vector<ScenePart> PlantBuilder::build() {
 }  // namespace
 
 std::vector<ScenePart> plantParts(uint64_t triangles, uint64_t seed) {
-  return PlantBuilder(drawLayout(triangles, seed)).build();
+  return PlantBuilder(drawPlant(triangles, seed)).build();
 }
 
 std::vector<ViewCell> plantCells(uint64_t triangles, uint64_t seed) {
-  const PlantLayout plant = drawLayout(triangles, seed);
+  const PlantLayout plant = drawPlant(triangles, seed);
   const uint32_t mi = (plant.nx - 1) / 2, mj = (plant.nz - 1) / 2;
   const double x = plant.aisle(mi), z = plant.aisle(mj);
   const double w = plant.width(), d = plant.depth();

@@ -118,10 +118,6 @@ void MeshBuilder::tube(std::span<const glm::vec3> path, float radius, uint32_t s
 
 namespace {
 
-glm::vec3 unitVector(glm::vec3 v) {
-  return v / std::sqrt(glm::dot(v, v));
-}
-
 /// Any unit vector at right angles to the unit vector d.
 glm::vec3 sideOf(glm::vec3 d) {
   const glm::vec3 helper = std::fabs(d.y) < 0.8f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);

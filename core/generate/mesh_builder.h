@@ -1,4 +1,5 @@
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -11,6 +12,10 @@ struct Turn {
   float sin, cos;
 };
 Turn turn(float share_of_full_turn);
+
+inline glm::vec3 unitVector(glm::vec3 v) {
+  return v / std::sqrt(glm::dot(v, v));
+}
 
 /// A local coordinate system: point = origin + p.x * x + p.y * y + p.z * z.
 struct Frame {

@@ -8,10 +8,6 @@ namespace {
 
 constexpr float kLattice = 0.35f;  // metres between the planes that pipes run in
 
-glm::vec3 unitVector(glm::vec3 v) {
-  return v / std::sqrt(glm::dot(v, v));
-}
-
 bool segmentMeets(glm::vec3 a, glm::vec3 b, const PipeBox& box, float margin) {
   for (int i = 0; i < 3; ++i) {
     if (std::min(a[i], b[i]) > box.high[i] + margin || std::max(a[i], b[i]) < box.low[i] - margin)

@@ -9,7 +9,7 @@
 namespace sightline {
 namespace {
 
-uint32_t sidesAt(uint32_t level, uint32_t most = 128) {
+uint32_t unitSides(uint32_t level, uint32_t most = 128) {
   return std::min(most, 6 + 2 * level);
 }
 
@@ -110,7 +110,7 @@ void makeRailing(MeshBuilder& mesh, float length, uint32_t level) {
 void makeTank(MeshBuilder& mesh, float radius, float height, uint64_t seed, uint32_t level) {
   GeneratorRandom random(seed, 0x7a2c);
   const float dome = radius * 0.35f, low = 0.7f + dome, high = height - dome;
-  mesh.lathe(vesselProfile(radius, low, high, dome, level), sidesAt(level));
+  mesh.lathe(vesselProfile(radius, low, high, dome, level), unitSides(level));
   const float leg = radius * 0.72f;
   for (uint32_t i = 0; i < 4; ++i) {
     const float x = i & 1 ? leg : -leg, z = i & 2 ? leg : -leg;
@@ -135,7 +135,7 @@ void makeTank(MeshBuilder& mesh, float radius, float height, uint64_t seed, uint
     const float y = low + (high - low) * (float(i) + 0.5f) / float(hoops);
     const LathePoint hoop[] = {
         {radius, y - 0.03f}, {radius + 0.04f, y - 0.03f}, {radius + 0.04f, y + 0.03f}, {radius, y + 0.03f}};
-    mesh.lathe(hoop, sidesAt(level));
+    mesh.lathe(hoop, unitSides(level));
   }
   ladder(mesh, {radius + 0.25f, 0, 0}, height * 0.95f, level);
 }
@@ -145,7 +145,7 @@ void makeDrum(MeshBuilder& mesh, float radius, float length, uint32_t level) {
   // The lathe turns about y: lay that axis along x.
   mesh.frame = {base.point({0, radius + 0.6f, 0}), -base.y, base.x, base.z};
   const float half = length / 2 - radius * 0.4f;
-  mesh.lathe(vesselProfile(radius, -half, half, radius * 0.4f, level), sidesAt(level));
+  mesh.lathe(vesselProfile(radius, -half, half, radius * 0.4f, level), unitSides(level));
   mesh.frame = base;
   for (const float x : {-half * 0.7f, half * 0.7f}) {
     mesh.box({x - 0.15f, 0, -radius * 0.8f}, {x + 0.15f, 0.6f + radius * 0.3f, radius * 0.8f}, kNoLowY);
@@ -157,7 +157,7 @@ void makeDrum(MeshBuilder& mesh, float radius, float length, uint32_t level) {
                                 {r * 1.2f, top + 0.2f},
                                 {r * 1.2f, top + 0.28f},
                                 {0, top + 0.28f}};
-  mesh.lathe(manhole, sidesAt(level, 64));
+  mesh.lathe(manhole, unitSides(level, 64));
 }
 
 void makeTubeBank(MeshBuilder& mesh, glm::vec3 size, uint32_t level) {
@@ -190,7 +190,7 @@ void makePump(MeshBuilder& mesh, uint32_t level) {
   }
   const Frame base = mesh.frame;
   mesh.frame = {base.point({0, 0.55f, 0}), -base.y, base.x, base.z};
-  const uint32_t sides = sidesAt(level, 64);
+  const uint32_t sides = unitSides(level, 64);
   const LathePoint motor[] = {{0, -0.72f},    {0.22f, -0.7f}, {0.25f, -0.6f}, {0.25f, -0.05f}, {0.2f, 0},
                               {0.06f, 0.01f}, {0.06f, 0.25f}, {0.2f, 0.26f},  {0.3f, 0.32f},   {0.3f, 0.5f},
                               {0.14f, 0.55f}, {0.14f, 0.75f}, {0, 0.75f}};

@@ -9,7 +9,7 @@
 namespace sightline {
 namespace {
 
-uint32_t sidesAt(uint32_t level, uint32_t most = 48) {
+uint32_t streetSides(uint32_t level, uint32_t most = 48) {
   return std::min(most, 4 + level);
 }
 
@@ -66,7 +66,7 @@ void makeCar(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
               {length, half * 0.9f, 0.35f, bonnet * 0.8f}});
   for (const float x : {-half + 0.05f, half - 0.05f}) {
     for (const float z : {-length * 0.62f, length * 0.62f}) {
-      wheel(mesh, {x, 0.32f, z}, 0.2f, 0.3f, sidesAt(level + 4));
+      wheel(mesh, {x, 0.32f, z}, 0.2f, 0.3f, streetSides(level + 4));
       if (level < 8) continue;
       const uint32_t spokes = std::min(24u, level - 3);
       const float out = x < 0 ? x - 0.1f : x + 0.1f;
@@ -97,7 +97,7 @@ void makeLamp(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
     mesh.box({-0.1f, high, -0.15f}, {1.2f, high + 0.12f, 0.15f});
     return;
   }
-  const uint32_t sides = sidesAt(level);
+  const uint32_t sides = streetSides(level);
   const LathePoint pole[] = {{0.16f, 0}, {0.16f, 0.5f}, {0.07f, 0.7f}, {0.05f, high}, {0, high + 0.1f}};
   mesh.lathe(pole, sides);
   std::vector<glm::vec3> arm;
@@ -166,7 +166,7 @@ void makeBin(MeshBuilder& mesh, uint64_t, uint32_t level) {
   if (level < 2) return;
   const LathePoint outline[] = {{0, 0.02f},    {0.22f, 0.02f}, {0.26f, 0.85f}, {0.28f, 0.87f},
                                 {0.28f, 0.9f}, {0.24f, 0.9f},  {0.2f, 0.1f},   {0, 0.08f}};
-  mesh.lathe(outline, sidesAt(level));
+  mesh.lathe(outline, streetSides(level));
 }
 
 void makeWire(MeshBuilder& mesh, glm::vec3 a, glm::vec3 b, uint32_t level) {
@@ -181,7 +181,7 @@ void makeWire(MeshBuilder& mesh, glm::vec3 a, glm::vec3 b, uint32_t level) {
   const Frame base = mesh.frame;
   mesh.frame = base.at((a + b) * 0.5f - glm::vec3(0, 0.6f, 0));
   const LathePoint lamp[] = {{0, -0.5f}, {0.2f, -0.4f}, {0.25f, -0.2f}, {0, 0}};
-  mesh.lathe(lamp, sidesAt(level, 32));
+  mesh.lathe(lamp, streetSides(level, 32));
   mesh.frame = base;
 }
 

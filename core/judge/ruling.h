@@ -12,6 +12,8 @@ enum class Verdict : uint8_t {
   kWrong,    ///< a triangle that the ray does not come near, or at a distance that is off
 };
 inline constexpr uint32_t kVerdicts = 4;
+inline constexpr Verdict kAllVerdicts[kVerdicts] = {Verdict::kRight, Verdict::kRounded, Verdict::kMissed,
+                                                    Verdict::kWrong};
 
 struct Ruling {
   Verdict verdict = Verdict::kRight;

@@ -22,7 +22,7 @@ constexpr uint64_t kBoxesAtATime = 1024;
 
 /// A side comes in by this many margins at most: one for what touches the box, one for what reaches into it
 /// by less than a margin.
-constexpr double kMostInset = 2;
+constexpr double kMostMargins = 2;
 
 /// Of a step: an end so near to a box's side by rounding is on it.
 constexpr double kSameStep = 1e-6;
@@ -32,11 +32,11 @@ constexpr double kTouching = 1 - 0x1p-20;
 
 enum class Verdict : uint8_t { kKept, kBlocked, kNothingBelow, kTooHigh, kInSolid };
 
-struct Box {
+struct CenteredBox {
   glm::dvec3 center, half_size;
 };
 
-bool meetsAnything(const Scene& scene, const Bvh& bvh, const Box& box) {
+bool meetsAnything(const Scene& scene, const Bvh& bvh, const CenteredBox& box) {
   return anyInLeaves(bvh, box.center - box.half_size, box.center + box.half_size, [&](uint32_t id) {
     const glm::uvec3 t = scene.triangles[id];
     const glm::dvec3 corners[3] = {glm::dvec3(scene.positions[t.x]) - box.center,
@@ -80,7 +80,7 @@ class BoxJudge {
   std::optional<SideInsets> insetsAt(const glm::dvec3& center) const {
     if (margin_ > 0) {
       const CellFrame frame = cellFrame({"", center, options_.size, glm::dvec3(0)});
-      return insetsToClear(scene_, bvh_, frame, margin_, glm::dvec3(kMostInset * margin_));
+      return insetsToClear(scene_, bvh_, frame, margin_, glm::dvec3(kMostMargins * margin_));
     }
     if (meetsAnything(scene_, bvh_, {center, options_.size * (0.5 * kTouching)})) return std::nullopt;
     return SideInsets{};

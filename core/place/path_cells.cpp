@@ -14,7 +14,7 @@ namespace sightline {
 namespace {
 
 /// Of a cell's extent: a side may come in so far. Half of the cell stays, the middle in it.
-constexpr double kMostInset = 0.25;
+constexpr double kMostInsetShare = 0.25;
 
 /// Length of a vector, from operations that every machine rounds alike, without overflow on the way.
 double lengthOf(const glm::dvec3& v) {
@@ -103,7 +103,7 @@ std::vector<ViewCell> pathCells(std::span<const glm::dvec3> points, const PathOp
 ClearCells keepClear(const Scene& scene, const Bvh& bvh, std::span<const ViewCell> cells, double margin) {
   std::vector<std::optional<SideInsets>> insets(cells.size());
   tbb::parallel_for(size_t(0), cells.size(), [&](size_t i) {
-    insets[i] = insetsToClear(scene, bvh, cellFrame(cells[i]), margin, cells[i].size * kMostInset);
+    insets[i] = insetsToClear(scene, bvh, cellFrame(cells[i]), margin, cells[i].size * kMostInsetShare);
   });
   ClearCells result;
   for (size_t i = 0; i < cells.size(); ++i) {

@@ -8,6 +8,7 @@
 
 #include "core/scene/cell_frame.h"
 #include "core/scene/contained.h"
+#include "core/scene/largest.h"
 
 namespace sightline {
 namespace {
@@ -19,10 +20,6 @@ constexpr double kBeside = 1.0 / 4;
 constexpr double kSmallestShare = 1e-6;
 /// Of the largest coordinate: four times the spacing of floats just below a power of two.
 constexpr double kFourSpacings = 0x1p-21;
-
-double largest(const glm::dvec3& v) {
-  return std::max({v.x, v.y, v.z});
-}
 
 double diagonal(const Bounds& bounds) {
   const glm::dvec3 extent = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);

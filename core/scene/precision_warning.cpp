@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/scene/largest.h"
 #include "core/scene/triangle_area.h"
 
 namespace sightline {
@@ -37,10 +38,6 @@ struct Loss {
   uint64_t collapsed = 0;  ///< without area
   uint64_t turned = 0;     ///< by more than 30 degrees
 };
-
-double largest(const glm::dvec3& v) {
-  return std::max({v.x, v.y, v.z});
-}
 
 class Positions {
  public:

@@ -14,7 +14,7 @@ struct ReferenceRange {
 ReferenceRange referencesBelow(const Bvh& bvh, uint32_t node) {
   uint32_t left = node, right = node;
   while (bvh.nodes2[left].count[0] == 0) left = bvh.nodes2[left].child[0];
-  const auto last = [&](uint32_t n) { return bvh.nodes2[n].child[1] == 0xffffffffu ? 0 : 1; };
+  const auto last = [&](uint32_t n) { return bvh.nodes2[n].child[1] == kNoChild ? 0 : 1; };
   while (bvh.nodes2[right].count[last(right)] == 0) right = bvh.nodes2[right].child[last(right)];
   const BvhNode2& end = bvh.nodes2[right];
   return {bvh.nodes2[left].child[0], end.child[last(right)] + end.count[last(right)]};
@@ -31,7 +31,7 @@ void cutBelow(const Bvh& bvh, uint32_t node, uint32_t limit, std::vector<Referen
     const uint32_t child = bvh.nodes2[node].child[i], count = bvh.nodes2[node].count[i];
     if (count > 0) {
       ranges.push_back({child, child + count});
-    } else if (child != 0xffffffffu) {
+    } else if (child != kNoChild) {
       cutBelow(bvh, child, limit, ranges);
     }
   }

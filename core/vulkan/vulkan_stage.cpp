@@ -67,12 +67,18 @@ VulkanStage VulkanStage::compute(const VulkanContext& context, const std::string
   VulkanStage stage;
   stage.context_ = &context;
   stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
-  stage.createPipeline(name, group_size);
+  stage.group_size_ = group_size;
+  stage.createPipeline(name);
   return stage;
 }
 
 VulkanStage VulkanStage::list(const VulkanContext& context, const std::string& name) {
-  return compute(context, name + ".comp", 64);
+  VulkanStage stage;
+  stage.context_ = &context;
+  stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
+  stage.group_size_ = 64;
+  stage.list_name_ = name + ".comp";
+  return stage;
 }
 
 VulkanStage VulkanStage::rays(const VulkanContext& context, const std::string& generation,
@@ -84,11 +90,10 @@ VulkanStage VulkanStage::rays(const VulkanContext& context, const std::string& g
   return stage;
 }
 
-void VulkanStage::createPipeline(const std::string& name, uint32_t group_size) {
-  group_size_ = group_size;
+void VulkanStage::createPipeline(const std::string& name) const {
   const VulkanHandle<VkShaderModule> module = shaderModule(*context_, name);
-  const VkSpecializationMapEntry entry{0, 0, sizeof group_size};
-  const VkSpecializationInfo constants{1, &entry, sizeof group_size, &group_size_};
+  const VkSpecializationMapEntry entry{0, 0, sizeof group_size_};
+  const VkSpecializationInfo constants{1, &entry, sizeof group_size_, &group_size_};
   auto info = vkStruct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
   info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
   info.stage.pSpecializationInfo = &constants;
@@ -145,6 +150,7 @@ void VulkanStage::createRayPipeline(const std::string& generation_name, const st
 }
 
 void VulkanStage::record(VkCommandBuffer commands, VkDeviceAddress launch, uint32_t count) const {
+  if (pipeline_.get() == VK_NULL_HANDLE) createPipeline(list_name_);
   const VulkanApi& api = context_->api();
   const VulkanLimits& limits = context_->limits();
   const bool pipelines = group_size_ == 0;

@@ -27,7 +27,8 @@ class VulkanStage {
   VulkanStage() = default;
   /// A compute shader ("count_bits.comp"). group_size: work items, its constant 0.
   static VulkanStage compute(const VulkanContext& context, const std::string& name, uint32_t group_size);
-  /// The same of shader "NAME.comp" with groups of 64.
+  /// The same of shader "NAME.comp" with groups of 64, compiled when it is first recorded, since who only traces
+  /// rays needs none of them.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
   /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each.
   static VulkanStage rays(const VulkanContext& context, const std::string& generation,
@@ -42,15 +43,16 @@ class VulkanStage {
     stages_ = stages;
     layout_ = pushLayout(*context_, stages);
   }
-  void createPipeline(const std::string& name, uint32_t group_size);
+  void createPipeline(const std::string& name) const;
   void createRayPipeline(const std::string& generation, const std::string& miss, const std::string& hit);
 
   const VulkanContext* context_ = nullptr;
   VkShaderStageFlags stages_ = 0;
   uint32_t group_size_ = 0;  ///< 0: ray tracing pipeline
   VulkanHandle<VkPipelineLayout> layout_;
-  VulkanHandle<VkPipeline> pipeline_;
-  VulkanBuffer table_;  ///< shader binding table: ray generation, miss, hit
+  std::string list_name_;                      ///< a list's shader, to be compiled at the first record()
+  mutable VulkanHandle<VkPipeline> pipeline_;  ///< a device's stages are recorded by one thread at a time
+  VulkanBuffer table_;                         ///< shader binding table: ray generation, miss, hit
   VkDeviceAddress table_start_ = 0;
   uint64_t table_stride_ = 0;
 };

@@ -12,12 +12,14 @@
 #include "core/pvs/pvs_writer.h"
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"
+#include "tests/scene/files.h"
 #include "tests/support/vulkan.h"
 
 namespace sightline {
 namespace {
 
 using test::ProgramRun;
+using test::readText;
 using test::Running;
 using test::runProgram;
 
@@ -76,11 +78,6 @@ void expectSameBake(const std::string& a, const std::string& b) {
 
 bool contains(const ProgramRun& run, const std::string& part) {
   return run.output.find(part) != std::string::npos;
-}
-
-std::string readText(const std::string& file) {
-  const auto bytes = readBytes(file);
-  return std::string(bytes.begin(), bytes.end());
 }
 
 /// Waits until the part file holds at least so many cells.

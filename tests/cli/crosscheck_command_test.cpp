@@ -11,6 +11,7 @@
 namespace sightline {
 namespace {
 
+using test::expectRun;
 using test::ProgramRun;
 using test::runProgram;
 
@@ -29,13 +30,6 @@ class City {
  private:
   TemporaryFolder folder_;
 };
-
-void expectRun(const std::string& arguments, int exit_code, std::initializer_list<const char*> parts) {
-  const ProgramRun run = runProgram(arguments);
-  EXPECT_EQ(run.exit_code, exit_code) << arguments << "\n" << run.output;
-  for (const char* part : parts)
-    EXPECT_NE(run.output.find(part), std::string::npos) << part << "\n" << run.output;
-}
 
 TEST(CrosscheckCommand, ReportsAndKeepsToLimits) {
   const City city;

@@ -13,11 +13,13 @@
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"
 #include "tests/output/version_3_file.h"
+#include "tests/scene/files.h"
 
 namespace sightline {
 namespace {
 
 using test::ProgramRun;
+using test::readText;
 using test::runProgram;
 
 /// A scene of two named quads, its saved set {0, 3}, and cells.
@@ -58,11 +60,6 @@ void expectFails(const std::string& arguments, int exit_code, const std::string&
   EXPECT_EQ(run.exit_code, exit_code) << arguments << "\n" << run.output;
   EXPECT_NE(run.output.find(part), std::string::npos) << arguments << "\n" << run.output;
   EXPECT_EQ(std::count(run.output.begin(), run.output.end(), '\n'), 1) << run.output;
-}
-
-std::string readText(const std::string& file) {
-  const auto bytes = readBytes(file);
-  return std::string(bytes.begin(), bytes.end());
 }
 
 TEST(Program, SaysItsVersionAndCommands) {

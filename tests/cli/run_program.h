@@ -1,11 +1,13 @@
 #pragma once
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cstdio>
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
 
@@ -27,6 +29,14 @@ inline ProgramRun runProgram(const std::string& arguments, const std::string& en
   const int status = pclose(pipe);
   run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return run;
+}
+
+/// Runs it, and expects the exit code and these parts of what it says.
+inline void expectRun(const std::string& arguments, int exit_code, std::initializer_list<const char*> parts) {
+  const ProgramRun run = runProgram(arguments);
+  EXPECT_EQ(run.exit_code, exit_code) << arguments << "\n" << run.output;
+  for (const char* part : parts)
+    EXPECT_NE(run.output.find(part), std::string::npos) << part << "\n" << run.output;
 }
 
 /// A program that runs beside the test.

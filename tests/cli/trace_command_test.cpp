@@ -13,15 +13,9 @@
 namespace sightline {
 namespace {
 
+using test::expectRun;
 using test::ProgramRun;
 using test::runProgram;
-
-void expectRun(const std::string& arguments, int exit_code, std::initializer_list<const char*> parts) {
-  const ProgramRun run = runProgram(arguments);
-  EXPECT_EQ(run.exit_code, exit_code) << arguments << "\n" << run.output;
-  for (const char* part : parts)
-    EXPECT_NE(run.output.find(part), std::string::npos) << part << "\n" << run.output;
-}
 
 /// Two walls before the origin, the nearer one at z = -2.
 class Walls {

@@ -10,19 +10,19 @@
 namespace sightline {
 namespace {
 
-constexpr int kSide = 24;
+constexpr int kImageSide = 24;
 constexpr uint32_t kTriangles = 12;
 
 /// Patches of a few triangles, and some of nothing at all: `background` percent.
 std::vector<uint32_t> randomImage(std::mt19937& random, uint32_t background) {
-  std::vector<uint32_t> image(size_t(kSide) * kSide, kNoTriangle);
+  std::vector<uint32_t> image(size_t(kImageSide) * kImageSide, kNoTriangle);
   for (int patch = 0; patch < 60; ++patch) {
     const uint32_t triangle = random() % 100 < background ? kNoTriangle : uint32_t(random() % kTriangles);
-    const int left = int(random() % kSide), top = int(random() % kSide);
-    const int right = std::min(kSide, left + 1 + int(random() % 9)),
-              low = std::min(kSide, top + 1 + int(random() % 5));
+    const int left = int(random() % kImageSide), top = int(random() % kImageSide);
+    const int right = std::min(kImageSide, left + 1 + int(random() % 9)),
+              low = std::min(kImageSide, top + 1 + int(random() % 5));
     for (int y = top; y < low; ++y) {
-      for (int x = left; x < right; ++x) image[size_t(y * kSide + x)] = triangle;
+      for (int x = left; x < right; ++x) image[size_t(y * kImageSide + x)] = triangle;
     }
   }
   return image;
@@ -41,7 +41,7 @@ ImageError expected(const std::vector<uint32_t>& image, const RankedSet& set, si
   for (const uint32_t triangle : image) {
     wrong.push_back(triangle != kNoTriangle && set.rank[triangle] >= set.prefixes[prefix] ? 1 : 0);
   }
-  return testing_support::floodFill(wrong, kSide);
+  return testing_support::floodFill(wrong, kImageSide);
 }
 
 /// Prefixes of nothing are counted once for all sets: the numbers are those of each alone.
@@ -53,7 +53,7 @@ TEST(Classifier, CountsEveryPrefixAsAFloodFillDoes) {
                                          randomSet(random, {100})};
     const std::vector<uint32_t> images[] = {randomImage(random, 0), randomImage(random, 30),
                                             randomImage(random, 100)};
-    Classifier classifier(sets, 3, kSide);
+    Classifier classifier(sets, 3, kImageSide);
     for (uint32_t view = 0; view < 3; ++view) classifier.classify(view, images[view]);
     for (size_t s = 0; s < sets.size(); ++s) {
       for (uint32_t view = 0; view < 3; ++view) {

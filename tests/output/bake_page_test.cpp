@@ -7,14 +7,16 @@
 #include <sstream>
 
 #include "tests/output/example_pvs.h"
+#include "tests/support/count_of.h"
 #include "tests/support/example_page.h"
 
 namespace sightline {
 namespace {
 
+using testing_support::countOf;
 using testing_support::kHostileName;
 
-BakeReport exampleReport() {
+BakeReport hostileReport() {
   BakeReport report;
   report.version = "1.2.3";
   report.scene.name = "room-" + kHostileName + ".obj";
@@ -44,7 +46,7 @@ std::string between(const std::string& text, const std::string& begin, const std
 TEST(BakePage, DrawsTheCurvesAndWhereTenWouldStop) {
   BakePage page;
   page.curves = {exampleCurve(), {}};
-  const std::string html = bakePage(exampleReport(), page).html();
+  const std::string html = bakePage(hostileReport(), page).html();
   const std::string rays = between(html, "<b>Set size over rays</b>", "</figure>");
   EXPECT_NE(rays.find("<tr><td>1000</td><td>100</td></tr>\n<tr><td>1500</td><td>150</td></tr>\n"
                       "<tr><td>2500</td><td>155</td></tr>\n<tr><td>2600</td><td>159</td></tr>\n"
@@ -61,15 +63,9 @@ TEST(BakePage, DrawsTheCurvesAndWhereTenWouldStop) {
   EXPECT_NE(html.find("1 of 2 cells were baked by an earlier run"), std::string::npos);
 }
 
-size_t countOf(const std::string& text, const std::string& what) {
-  size_t count = 0;
-  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
-  return count;
-}
-
 /// A report of so many cells, and a page with a curve of each: cell i has i times the triangles of the first.
 std::string pageOfCells(uint32_t cells) {
-  BakeReport report = exampleReport();
+  BakeReport report = hostileReport();
   BakePage page;
   for (uint32_t i = 1; i <= cells; ++i) {
     report.cells.resize(i, report.cells[0]);
@@ -117,7 +113,7 @@ TEST(BakePage, PicturesComeBeforeTheStageCharts) {
 }
 
 TEST(BakePage, CountsOneCellAsOne) {
-  BakeReport report = exampleReport();
+  BakeReport report = hostileReport();
   report.cells.resize(1);
   report.planned_cells = 1;
   BakePage page;
@@ -130,7 +126,7 @@ TEST(BakePage, CountsOneCellAsOne) {
 TEST(BakePage, WithoutCurvesItStillHasItsTable) {
   BakePage page;
   page.curves.resize(2);
-  const std::string html = bakePage(exampleReport(), page).html();
+  const std::string html = bakePage(hostileReport(), page).html();
   EXPECT_EQ(html.find("<canvas"), std::string::npos);
   EXPECT_NE(html.find("ray limit"), std::string::npos);
 }
@@ -146,7 +142,7 @@ TEST(BakePage, HasColumnsForWhatSomeCellsHave) {
   const auto shows = [](const BakeReport& report, const char* column) {
     return pageOf(report).find(std::string("<th scope=\"col\">") + column + "</th>") != std::string::npos;
   };
-  BakeReport report = exampleReport();
+  BakeReport report = hostileReport();
   for (CellSummary& cell : report.cells) {
     cell.stats.bound_tests = 0;
     cell.stats.contained_triangles = 0;
@@ -174,7 +170,7 @@ TEST(BakePage, HasColumnsForWhatSomeCellsHave) {
 TEST(BakePage, ListsTheParametersOfTheMethod) {
   BakePage page;
   page.curves.resize(2);
-  BakeReport report = exampleReport();
+  BakeReport report = hostileReport();
   const auto has = [&](Method method, const char* name) {
     report.params.method = method;
     return bakePage(report, page).html().find(std::string("<dt>") + name + "</dt>") != std::string::npos;
@@ -191,9 +187,9 @@ TEST(BakePage, NoNameBreaksIt) {
   BakePage page;
   page.curves = {exampleCurve(), exampleCurve()};
   page.command = kHostileName;
-  const std::string html = bakePage(exampleReport(), page).html();
+  const std::string html = bakePage(hostileReport(), page).html();
   EXPECT_EQ(html.find(kHostileName), std::string::npos);
-  const std::string csv = curvesCsv(exampleReport(), page.curves);
+  const std::string csv = curvesCsv(hostileReport(), page.curves);
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "cell,iteration,seconds,random_rays,border_rays,reverse_rays,random_new,border_new,reverse_new,"
             "triangles");
@@ -202,7 +198,7 @@ TEST(BakePage, NoNameBreaksIt) {
 
 /// A cell of an earlier run has no curve, but its end is known.
 TEST(CurvesCsv, HasALineForACellOfAnEarlierRun) {
-  BakeReport report = exampleReport();
+  BakeReport report = hostileReport();
   report.cells[1].cell.name = std::string("b");
   const std::string csv = curvesCsv(report, {{}, exampleCurve()});
   const std::string lines = csv.substr(csv.find('\n') + 1);

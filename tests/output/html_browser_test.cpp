@@ -158,7 +158,7 @@ TEST_F(HtmlInBrowser, ShowsABake) {
 }
 
 /// The page of so many cells, with curves.
-std::string pageOfCells(size_t cells) {
+std::string pageOfCurves(size_t cells) {
   BakeReport report;
   report.scene.name = "city.glb";
   report.scene.triangles = 100'000;
@@ -182,7 +182,7 @@ TEST_F(HtmlInBrowser, ALegendStaysSmallerThanItsChart) {
   many.table({.columns = {"a"}, .rows = {{"b"}}});
   many.charts({testing_support::exampleChart("Fifty lines", true, 50, 30)});
   for (const int width : {390, 1280}) {
-    for (const std::string& html : {pageOfCells(50), many.html()}) {
+    for (const std::string& html : {pageOfCurves(50), many.html()}) {
       const json page = measure(html, width);
       EXPECT_EQ(page["wrong"], json::array());
       EXPECT_EQ(page["scroll_width"], width);
@@ -196,7 +196,7 @@ TEST_F(HtmlInBrowser, ALegendStaysSmallerThanItsChart) {
 
 /// Picks two of fifty cells, by keys and by a click, then takes one back.
 TEST_F(HtmlInBrowser, ShowsSingleCellsOnDemand) {
-  std::string html = pageOfCells(50);
+  std::string html = pageOfCurves(50);
   html.insert(html.rfind("</body>"), R"(<script>
     const shown = () => Array.from(document.querySelectorAll('.charts')[0].querySelectorAll('figure'), (figure) => {
       const chart = Chart.getChart(figure.querySelector('canvas'));
@@ -272,11 +272,11 @@ TEST_F(HtmlInBrowser, EnlargesSmallPictures) {
 
 /// Where a table is wider than the page, its edge fades and a line says so.
 TEST_F(HtmlInBrowser, SaysThatATableScrolls) {
-  const json phone = measure(pageOfCells(2), 400);
+  const json phone = measure(pageOfCurves(2), 400);
   EXPECT_EQ(phone["tables"], json::array({true}));
   EXPECT_EQ(phone["hints"], json::array({true}));
   EXPECT_EQ(phone["faded"], json::array({true}));
-  const json desktop = measure(pageOfCells(2), 1500);
+  const json desktop = measure(pageOfCurves(2), 1500);
   EXPECT_EQ(desktop["tables"], json::array({false}));
   EXPECT_EQ(desktop["hints"], json::array({false}));
   EXPECT_EQ(desktop["faded"], json::array({false}));

@@ -10,19 +10,15 @@
 #include "core/io/csv.h"
 #include "core/page/html_text.h"
 #include "core/page/parts/parts.h"
+#include "tests/support/count_of.h"
 #include "tests/support/example_page.h"
 
 namespace sightline {
 namespace {
 
+using testing_support::countOf;
 using testing_support::examplePage;
 using testing_support::kHostileName;
-
-size_t countOf(const std::string& text, const std::string& what) {
-  size_t count = 0;
-  for (size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++count;
-  return count;
-}
 
 /// The page without the parts that are the same in all: what is made of data.
 std::string variablePart(const std::string& html) {

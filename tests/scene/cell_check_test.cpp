@@ -10,16 +10,13 @@
 #include "core/scene/contained.h"
 #include "core/trace/cpu_tracer.h"
 #include "tests/support/boxes.h"
+#include "tests/support/make_cell.h"
 
 namespace sightline {
 namespace {
 
+using testing_support::makeCell;
 using testing_support::SceneOfBoxes;
-
-ViewCell makeCell(const glm::dvec3& center, const glm::dvec3& size,
-                  const glm::dvec3& rotation = glm::dvec3(0.0)) {
-  return {"cell", center, size, rotation};
-}
 
 /// A floor of 100 x 100, its front up, with a closed block of 20 x 10 x 20 on its middle.
 Scene blockOnAFloor() {

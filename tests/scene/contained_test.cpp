@@ -6,14 +6,12 @@
 #include <random>
 
 #include "core/scene/cell_frame.h"
+#include "tests/support/make_cell.h"
 
 namespace sightline {
 namespace {
 
-ViewCell makeCell(const glm::dvec3& center, const glm::dvec3& size,
-                  const glm::dvec3& rotation = glm::dvec3(0.0)) {
-  return {"cell", center, size, rotation};
-}
+using testing_support::makeCell;
 
 Scene makeScene(const std::vector<std::vector<glm::vec3>>& triangles) {
   Scene scene;

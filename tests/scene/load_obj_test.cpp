@@ -20,10 +20,10 @@ using test::expectValid;
 using test::loadError;
 using test::loadText;
 
-const std::string kSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+const std::string kObjSquare = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
 TEST(LoadObj, TrianglesAndObjects) {
-  const Scene scene = loadText("a.obj", "# a comment\nmtllib none.mtl\n" + kSquare +
+  const Scene scene = loadText("a.obj", "# a comment\nmtllib none.mtl\n" + kObjSquare +
                                             "vt 0 0\nvn 0 0 1\nf 1 2 3\n"
                                             "o house\nusemtl brick\nf 1/1 2/1 3/1\nf 1//1 3//1 4//1\n"
                                             "g  walls north \nf 1/1/1 2/1/1 3/1/1 4/1/1\n"
@@ -69,12 +69,13 @@ TEST(LoadObj, LineEndsContinuationsAndComments) {
 }
 
 TEST(LoadObj, CommentsAreNotContinued) {
-  const Scene scene = loadText("a.obj", kSquare + "f 1 2 3 # C:\\\nf 1 3 4\nf 2 \\\n3 4 # D:\\\nf 1 2 4\n");
+  const Scene scene =
+      loadText("a.obj", kObjSquare + "f 1 2 3 # C:\\\nf 1 3 4\nf 2 \\\n3 4 # D:\\\nf 1 2 4\n");
   EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}, {1, 2, 3}, {0, 1, 3}}));
 }
 
 TEST(LoadObj, ByteOrderMarkIsSkipped) {
-  const Scene scene = loadText("a.obj", "\xef\xbb\xbf" + kSquare + "f 1 2 3\n");
+  const Scene scene = loadText("a.obj", "\xef\xbb\xbf" + kObjSquare + "f 1 2 3\n");
   ASSERT_EQ(scene.positions.size(), 4u);
   EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}}));
 }
@@ -89,19 +90,19 @@ TEST(LoadObj, FacesMayStandBeforeTheirVertices) {
 
 TEST(LoadObj, ErrorsNameTheLine) {
   const std::pair<std::string, std::string> cases[] = {
-      {kSquare + "\nf 1 2 5\n", "a.obj:6: vertex index 5 is out of range 1..4; --repair drops the face"},
-      {kSquare + "f 1 2 \\\n 3\nf 1 2 0\n",
+      {kObjSquare + "\nf 1 2 5\n", "a.obj:6: vertex index 5 is out of range 1..4; --repair drops the face"},
+      {kObjSquare + "f 1 2 \\\n 3\nf 1 2 0\n",
        "a.obj:7: vertex index 0 is out of range 1..4; --repair drops the face"},
-      {kSquare + "f 1 -5 3\n", "a.obj:5: vertex index 0 is out of range 1..4; --repair drops the face"},
-      {kSquare + "f 4294967297 2 3\n",
+      {kObjSquare + "f 1 -5 3\n", "a.obj:5: vertex index 0 is out of range 1..4; --repair drops the face"},
+      {kObjSquare + "f 4294967297 2 3\n",
        "a.obj:5: vertex index 4294967297 is out of range 1..4; --repair drops the face"},
-      {kSquare + "f 99999999999999999999/1 2 3\n",
+      {kObjSquare + "f 99999999999999999999/1 2 3\n",
        "a.obj:5: vertex index 4611686018427387904 is out of range 1..4; --repair drops the face"},
-      {kSquare + "f\n", "a.obj:5: face has 0 vertices, needs at least 3; --repair drops it"},
-      {kSquare + "f 1 2\n", "a.obj:5: face has 2 vertices, needs at least 3; --repair drops it"},
+      {kObjSquare + "f\n", "a.obj:5: face has 0 vertices, needs at least 3; --repair drops it"},
+      {kObjSquare + "f 1 2\n", "a.obj:5: face has 2 vertices, needs at least 3; --repair drops it"},
       {"f 1 2 3\n", "a.obj:1: face without any vertex in the file"},
-      {kSquare + "f 1 2 3\nv\n", "a.obj:6: expected three numbers after \"v\""},
-      {kSquare + "f 1 \\\n 5 2\n\nf 1 2 6\nv 0 0 0\n",
+      {kObjSquare + "f 1 2 3\nv\n", "a.obj:6: expected three numbers after \"v\""},
+      {kObjSquare + "f 1 \\\n 5 2\n\nf 1 2 6\nv 0 0 0\n",
        "a.obj:8: vertex index 6 is out of range 1..5; --repair drops the face"},
       {"v 0 0\n", "a.obj:1: expected three numbers after \"v\""},
       {"v 0 0,5 1\n", "a.obj:1: expected three numbers after \"v\""},
@@ -113,7 +114,7 @@ TEST(LoadObj, ErrorsNameTheLine) {
        "scene; "
        "--repair drops its triangles"},
       {"v 0 1e39 0\n", "a.obj:1: vertex (0, inf, 0) is not finite; --repair drops its triangles"},
-      {kSquare, "a.obj: holds no triangles"},
+      {kObjSquare, "a.obj: holds no triangles"},
       {"", "a.obj: is empty"},
       {"no obj at all",
        "a.obj: holds no triangles; statements not understood, not read: 1, the first in line 1 (\"no\")"},
@@ -152,7 +153,7 @@ TEST(LoadObj, CornersAreReadWholeOrNotAtAll) {
                                    "1"}) {
     for (const std::string& face :
          {"f " + corner + " 2 3\n", "f 1 2 3 " + corner + "\n", "fo 1\t" + corner + " 3\n"}) {
-      const std::string text = kSquare + "# here\n" + face + "f 2 3 4\n";
+      const std::string text = kObjSquare + "# here\n" + face + "f 2 3 4\n";
       const std::string error = loadError("a.obj", text);
       EXPECT_EQ(error.find("a.obj:6: expected a vertex number (7, 7/1, 7//3 or 7/1/3) and found \""), 0u)
           << face << error;
@@ -161,22 +162,22 @@ TEST(LoadObj, CornersAreReadWholeOrNotAtAll) {
       EXPECT_GT(scene.repaired_triangles, 0u);
     }
   }
-  EXPECT_EQ(loadError("a.obj", kSquare + "f 1 1,001 3\n"),
+  EXPECT_EQ(loadError("a.obj", kObjSquare + "f 1 1,001 3\n"),
             "a.obj:5: expected a vertex number (7, 7/1, 7//3 or 7/1/3) and found \"1,001\"; --repair drops "
             "the face");
   const Scene scene =
-      loadText("a.obj", kSquare + "f +1 2/ 3//\nf 1/1 2/-7/+7 3/1/\nf\t-4/99999999999999999999 2  3 \t\n");
+      loadText("a.obj", kObjSquare + "f +1 2/ 3//\nf 1/1 2/-7/+7 3/1/\nf\t-4/99999999999999999999 2  3 \t\n");
   EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 1, 2}, {0, 1, 2}}));
 }
 
 TEST(LoadObj, OldKeywordForFaces) {
-  const Scene scene = loadText("a.obj", kSquare + "f 1 2 3\nfo 1//1 3//1 4//1\n  fo 2 \\\n 3 4 # c\n");
+  const Scene scene = loadText("a.obj", kObjSquare + "f 1 2 3\nfo 1//1 3//1 4//1\n  fo 2 \\\n 3 4 # c\n");
   EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {0, 2, 3}, {1, 2, 3}}));
   EXPECT_TRUE(scene.warnings.empty());
 }
 
 TEST(LoadObj, SaysWhatItDoesNotRead) {
-  const std::string head = kSquare + "f 1 2 3\n";
+  const std::string head = kObjSquare + "f 1 2 3\n";
   EXPECT_TRUE(loadText("a.obj", head +
                                     "p 1\nl 1 2\nvt 0 0\nvn 0 0 1\nvp 0\ns 1\ncstype bezier\ncurv 0 1 1 2\n"
                                     "parm u 0 1\nend\n# x\n\n   \nmg off\nlod 1\n")
@@ -186,7 +187,7 @@ TEST(LoadObj, SaysWhatItDoesNotRead) {
       (std::vector<std::string>{"free-form surfaces, not read: 2, the first in line 7; export polygons",
                                 "statements not understood, not read: 2, the first in line 6 (\"F\")"}));
   EXPECT_EQ(
-      loadError("a.obj", kSquare + "surf 0 1 0 1 1 2 3 4\n"),
+      loadError("a.obj", kObjSquare + "surf 0 1 0 1 1 2 3 4\n"),
       "a.obj: holds no triangles; free-form surfaces, not read: 1, the first in line 5; export polygons");
 }
 
@@ -197,7 +198,9 @@ TEST(LoadObj, CountsGlass) {
       "newmtl clear\nKd 1 1 1\nd 0.5\nnewmtl wall\nd 1\nTr 1\nnewmtl tr\nTr 0.25\nnewmtl solid\nTr 0\n"
       "newmtl halo\nd -halo 0.9\nnewmtl leaf\nd 1.0\nmap_d leaf.png\nnewmtl odd\nd\nTr x\n");
   folder.write("two words.mtl", "# c\r\nnewmtl two words\r\nd 0 \r\n");
-  const auto load = [&](const std::string& text) { return loadScene(folder.write("a.obj", kSquare + text)); };
+  const auto load = [&](const std::string& text) {
+    return loadScene(folder.write("a.obj", kObjSquare + text));
+  };
   const std::pair<std::string, uint64_t> cases[] = {{"clear", 3}, {"wall", 0}, {"tr", 3},  {"solid", 0},
                                                     {"halo", 3},  {"leaf", 3}, {"odd", 0}, {"none", 0}};
   for (const auto& [name, count] : cases) {
@@ -236,7 +239,7 @@ TEST(LoadObj, MaterialsOutsideTheFolderAreNotRead) {
   folder.write("scene/in.mtl", "newmtl a\nd 0\n");
   const auto load = [&](const std::string& library) {
     return loadScene(
-        folder.write("scene/a.obj", "mtllib " + library + "\n" + kSquare + "usemtl a\nf 1 2 3\n"));
+        folder.write("scene/a.obj", "mtllib " + library + "\n" + kObjSquare + "usemtl a\nf 1 2 3\n"));
   };
   for (const std::string& library :
        {std::string("../m.mtl"), std::string("..\\m.mtl"), std::string("sub/../../m.mtl"), outside}) {
@@ -277,22 +280,22 @@ TEST(LoadObj, RepairDropsAndCounts) {
   SceneLoadOptions repair;
   repair.repair = true;
   const Scene scene =
-      loadText("a.obj", kSquare + "v nan 0 0\nf 1 2 3\nf 1 2 5\nf 1 2 3 99\nf 1 2\nf 2 3 4\n", repair);
+      loadText("a.obj", kObjSquare + "v nan 0 0\nf 1 2 3\nf 1 2 5\nf 1 2 3 99\nf 1 2\nf 2 3 4\n", repair);
   expectValid(scene);
   EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {1, 2, 3}}));
   EXPECT_EQ(scene.repaired_triangles, 4u);
-  EXPECT_EQ(loadError("a.obj", kSquare + "f 1 2 9\n", repair),
+  EXPECT_EQ(loadError("a.obj", kObjSquare + "f 1 2 9\n", repair),
             "a.obj: no triangle is left; all 1 were dropped as bad");
 }
 
 TEST(LoadObj, CountsDegenerateTriangles) {
-  const Scene scene = loadText("a.obj", kSquare + "v 2 0 0\nf 1 1 2\nf 1 2 5\nf 1 2 3\n");
+  const Scene scene = loadText("a.obj", kObjSquare + "v 2 0 0\nf 1 1 2\nf 1 2 5\nf 1 2 3\n");
   EXPECT_EQ(scene.triangles.size(), 3u);
   EXPECT_EQ(scene.degenerate_triangles, 2u);
 }
 
 TEST(LoadObj, NamesBecomeCleanUtf8) {
-  const Scene scene = loadText("a.obj", kSquare + "o b\xe4u\x01 \xc3\xa4\tx\nf 1 2 3\n");
+  const Scene scene = loadText("a.obj", kObjSquare + "o b\xe4u\x01 \xc3\xa4\tx\nf 1 2 3\n");
   EXPECT_EQ(scene.objects[0].name, "b_u_ \xc3\xa4 x");
 }
 
@@ -306,7 +309,7 @@ TEST(LoadScene, FileErrors) {
   EXPECT_EQ(error("dir.obj"), "dir.obj: is a directory, not a file");
   folder.write("a.fbx", "x");
   EXPECT_EQ(error("a.fbx"), "a.fbx: unknown extension \".fbx\", expected .obj, .gltf, .glb or .ply");
-  folder.write("A.OBJ", kSquare + "f 1 2 3\n");
+  folder.write("A.OBJ", kObjSquare + "f 1 2 3\n");
   EXPECT_EQ(loadScene(folder / "A.OBJ").triangles.size(), 1u);
 }
 
@@ -318,7 +321,7 @@ TEST(SceneBounds, CoverUsedVerticesOnly) {
 }
 
 TEST(HashScene, DependsOnPositionsAndTrianglesOnly) {
-  const Scene scene = loadText("a.obj", kSquare + "f 1 2 3\nf 1 3 4\n");
+  const Scene scene = loadText("a.obj", kObjSquare + "f 1 2 3\nf 1 3 4\n");
   Scene other = scene;
   other.objects[0].name = "renamed";
   EXPECT_EQ(hashScene(other), hashScene(scene));

@@ -15,7 +15,7 @@ using test::expectValid;
 using test::loadError;
 using test::loadText;
 
-const std::string kVertices =
+const std::string kPlyVertices =
     "ply\nformat ascii 1.0\ncomment made by hand\nobj_info none\nelement vertex 4\nproperty uchar red\n"
     "property float x\nproperty float y\nproperty list uchar int tags\nproperty double z\n";
 const std::string kRows = "7 0 0 1 5 0\n7 1 0 0 0\n7 1 1 2 1 2 0\n7 0 1 0 0.1\n";
@@ -23,7 +23,8 @@ const std::string kFace = "property list uchar int vertex_indices\n";
 
 /// The ASCII file above with these faces.
 std::string asciiFile(int faces, const std::string& rows) {
-  return kVertices + "element face " + std::to_string(faces) + "\n" + kFace + "end_header\n" + kRows + rows;
+  return kPlyVertices + "element face " + std::to_string(faces) + "\n" + kFace + "end_header\n" + kRows +
+         rows;
 }
 
 /// Appends a value's bytes in one of the two orders.
@@ -86,7 +87,7 @@ TEST(LoadPly, BinaryInBothByteOrders) {
 
 TEST(LoadPly, TriangleStrips) {
   const std::string text =
-      kVertices + "element tristrips 1\n" + kFace + "end_header\n" + kRows + "8 0 1 2 3 -1 1 2 3\n";
+      kPlyVertices + "element tristrips 1\n" + kFace + "end_header\n" + kRows + "8 0 1 2 3 -1 1 2 3\n";
   const Scene scene = loadText("a.ply", text);
   expectValid(scene);
   EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {2, 1, 3}, {1, 2, 3}}));
@@ -110,7 +111,7 @@ TEST(LoadPly, ErrorsNameElementAndRow) {
        "a.ply: element vertex has no property z"},
       {head + "element face 1\n" + kFace + "end_header\n3 0 1 2\n",
        "a.ply: element face stands before the vertices"},
-      {kVertices + "element face 1\nproperty int x\nend_header\n" + kRows + "1\n",
+      {kPlyVertices + "element face 1\nproperty int x\nend_header\n" + kRows + "1\n",
        "a.ply: element face has no list vertex_indices"},
       {asciiFile(2, "3 0 1 2\n3 0 1 4\n"),
        "a.ply: element face, row 1: vertex index 4 is out of range 0..3; --repair drops the face"},

@@ -10,7 +10,7 @@
 namespace sightline {
 namespace {
 
-ViewCell makeCell(const glm::dvec3& size, const glm::dvec3& rotation = glm::dvec3(0.0)) {
+ViewCell cellOfSize(const glm::dvec3& size, const glm::dvec3& rotation = glm::dvec3(0.0)) {
   ViewCell cell;
   cell.name = "cell";
   cell.center = {10.0, 20.0, 30.0};
@@ -32,7 +32,7 @@ glm::dvec3 rotateStepByStep(glm::dvec3 v, const glm::dvec3& degrees) {
 }
 
 TEST(CellFaces, BoxHasSixFacesInOrder) {
-  const std::vector<Face> faces = cellFaces(makeCell({2.0, 4.0, 6.0}));
+  const std::vector<Face> faces = cellFaces(cellOfSize({2.0, 4.0, 6.0}));
   ASSERT_EQ(faces.size(), 6u);
   const glm::vec3 normals[6] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
   for (size_t i = 0; i < 6; ++i) EXPECT_EQ(normalOf(faces[i]), normals[i]) << i;
@@ -44,7 +44,7 @@ TEST(CellFaces, BoxHasSixFacesInOrder) {
 }
 
 TEST(CellFaces, FlatCellLooksAlongLocalZ) {
-  const std::vector<Face> faces = cellFaces(makeCell({2.0, 4.0, 0.0}));
+  const std::vector<Face> faces = cellFaces(cellOfSize({2.0, 4.0, 0.0}));
   ASSERT_EQ(faces.size(), 1u);
   EXPECT_EQ(faces[0].corner, glm::vec4(9, 18, 30, 0));
   EXPECT_EQ(faces[0].axis_u, glm::vec4(1, 0, 0, 0));
@@ -56,7 +56,7 @@ TEST(CellFaces, SheetLooksToBothSides) {
   for (int axis = 0; axis < 2; ++axis) {
     glm::dvec3 size(3.0);
     size[axis] = 0.0;
-    const std::vector<Face> faces = cellFaces(makeCell(size));
+    const std::vector<Face> faces = cellFaces(cellOfSize(size));
     ASSERT_EQ(faces.size(), 2u) << axis;
     EXPECT_EQ(normalOf(faces[0])[axis], -1.0f);
     EXPECT_EQ(normalOf(faces[1])[axis], 1.0f);
@@ -68,7 +68,7 @@ TEST(CellFaces, RightAnglesAreExact) {
     for (int y = -4; y <= 4; ++y) {
       for (int z = -4; z <= 4; ++z) {
         const glm::dvec3 rotation(90.0 * x, 90.0 * y, 90.0 * z);
-        for (const Face& face : cellFaces(makeCell({2.0, 4.0, 6.0}, rotation))) {
+        for (const Face& face : cellFaces(cellOfSize({2.0, 4.0, 6.0}, rotation))) {
           for (const glm::vec4& axis : {face.axis_u, face.axis_v, face.normal}) {
             for (int i = 0; i < 4; ++i) {
               EXPECT_TRUE(axis[i] == 0.0f || axis[i] == 1.0f || axis[i] == -1.0f)
@@ -87,7 +87,7 @@ TEST(CellFaces, RotationIsXThenYThenZ) {
   std::uniform_real_distribution<double> angle(-720.0, 720.0);
   for (int round = 0; round < 1000; ++round) {
     const glm::dvec3 rotation(angle(random), angle(random), angle(random));
-    const std::vector<Face> faces = cellFaces(makeCell({1.0, 2.0, 3.0}, rotation));
+    const std::vector<Face> faces = cellFaces(cellOfSize({1.0, 2.0, 3.0}, rotation));
     const glm::dvec3 local[6] = {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}};
     for (size_t i = 0; i < 6; ++i) {
       const glm::dvec3 expected = rotateStepByStep(local[i], rotation);
@@ -105,13 +105,13 @@ TEST(CellFaces, RotationIsXThenYThenZ) {
 
 /// Not the C library's sines, which differ from one to the next: glibc 2.36 has 0x1.0000000000001p-1 here.
 TEST(CellFaces, RotationDoesNotDependOnTheCLibrary) {
-  const CellFrame frame = cellFrame(makeCell({2.0, 4.0, 6.0}, {0, 60, 0}));
+  const CellFrame frame = cellFrame(cellOfSize({2.0, 4.0, 6.0}, {0, 60, 0}));
   EXPECT_EQ(frame.axes[0], glm::dvec3(0.5, 0, -0x1.bb67ae8584caap-1));
   EXPECT_EQ(frame.axes[2], glm::dvec3(0x1.bb67ae8584caap-1, 0, 0.5));
 }
 
 TEST(CellFaces, FacesLieOutwardsOfTheCenter) {
-  const ViewCell cell = makeCell({1.0, 2.0, 3.0}, {10.0, 20.0, 30.0});
+  const ViewCell cell = cellOfSize({1.0, 2.0, 3.0}, {10.0, 20.0, 30.0});
   const std::vector<Face> faces = cellFaces(cell);
   for (size_t i = 0; i < 6; ++i) {
     const glm::vec3 middle = glm::vec3(faces[i].corner + 0.5f * faces[i].edge_u + 0.5f * faces[i].edge_v);
@@ -122,7 +122,7 @@ TEST(CellFaces, FacesLieOutwardsOfTheCenter) {
 }
 
 TEST(CellFaces, ScaleByPowerOfTwoScalesEveryBit) {
-  ViewCell cell = makeCell({1.1, 2.2, 3.3}, {10.0, 20.0, 30.0});
+  ViewCell cell = cellOfSize({1.1, 2.2, 3.3}, {10.0, 20.0, 30.0});
   const std::vector<Face> faces = cellFaces(cell);
   cell.center *= 1024.0;
   cell.size *= 1024.0;
@@ -136,7 +136,7 @@ TEST(CellFaces, ScaleByPowerOfTwoScalesEveryBit) {
 }
 
 TEST(CellCorners, AreTheBoxesCorners) {
-  const std::vector<glm::vec3> corners = cellCorners(makeCell({2.0, 4.0, 6.0}));
+  const std::vector<glm::vec3> corners = cellCorners(cellOfSize({2.0, 4.0, 6.0}));
   ASSERT_EQ(corners.size(), 8u);
   for (const float x : {9.0f, 11.0f}) {
     for (const float y : {18.0f, 22.0f}) {
@@ -148,7 +148,7 @@ TEST(CellCorners, AreTheBoxesCorners) {
 }
 
 TEST(CellCorners, FlatCellHasPairs) {
-  const std::vector<glm::vec3> corners = cellCorners(makeCell({2.0, 4.0, 0.0}));
+  const std::vector<glm::vec3> corners = cellCorners(cellOfSize({2.0, 4.0, 0.0}));
   ASSERT_EQ(corners.size(), 8u);
   for (size_t i = 0; i < 4; ++i) EXPECT_EQ(corners[i], corners[i + 4]);
 }

@@ -1,5 +1,5 @@
-# Flattens ENTRY and what it includes (each file once, .inl files every time) into OUTPUT, a C++ file that defines
-# sightline::kProgramSource. Lines keep their file and number in build logs through #line.
+# Flattens ENTRY and what it includes (each file once, .inl files every time) into OUTPUT. Lines keep their file and
+# number in build logs through #line.
 cmake_minimum_required(VERSION 3.25)
 set(done "")
 set(text "")
@@ -37,13 +37,4 @@ string(REPLACE "@SEMICOLON@" ";" text "${text}")
 string(REPLACE "@OPEN@" "[" text "${text}")
 string(REPLACE "@CLOSE@" "]" text "${text}")
 string(REPLACE "@BACKSLASH@" "\\" text "${text}")
-# Raw string literals of limited length, joined by the compiler.
-string(LENGTH "${text}" length)
-set(body "")
-set(position 0)
-while(position LESS length)
-  string(SUBSTRING "${text}" ${position} 8000 part)
-  string(APPEND body "R\"KERNEL(${part})KERNEL\"\n")
-  math(EXPR position "${position} + 8000")
-endwhile()
-file(WRITE ${OUTPUT} "#include \"cl_kernels/program_source.h\"\nnamespace sightline {\nextern const char* const kProgramSource =\n${body};\n}\n")
+file(WRITE ${OUTPUT} "${text}")

@@ -1,8 +1,6 @@
-// Build tool: embed_spirv OUTPUT.cpp FILE.spv... writes a C++ file that defines shaderCode (shaders.h). A
-// shader's name is its file's name without ".spv".
-//
-// On the way it decorates every float operation NoContraction. GLSL's `precise` does not reach into called
-// functions, and the shared headers consist of functions.
+// Build tool: no_contraction FOLDER FILE.spv... writes each module into the folder with every float operation
+// decorated NoContraction. GLSL's `precise` does not reach into called functions, and the shared headers
+// consist of functions.
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
@@ -75,33 +73,23 @@ Words withoutContraction(const Words& module) {
   return result;
 }
 
-void writeArray(std::ofstream& out, const std::string& name, const Words& words) {
-  out << "constexpr uint32_t " << name << "[] = {";
-  for (size_t i = 0; i < words.size(); ++i) out << (i % 16 == 0 ? "\n" : "") << words[i] << "u,";
-  out << "};\n";
-}
-
-void embed(const std::filesystem::path& output, const std::vector<std::filesystem::path>& files) {
-  std::ofstream out(output);
-  out << "#include \"vk_shaders/shaders.h\"\n#include <stdexcept>\n#include <string>\n"
-         "namespace sightline {\nnamespace {\n";
-  std::string choices;
-  for (size_t i = 0; i < files.size(); ++i) {
-    const std::string array = "kShader" + std::to_string(i);
-    writeArray(out, array, withoutContraction(readSpirv(files[i])));
-    choices += "  if (name == \"" + files[i].stem().string() + "\") return " + array + ";\n";
-  }
-  out << "}\nstd::span<const uint32_t> shaderCode(std::string_view name) {\n"
-      << choices << "  throw std::out_of_range(\"no shader \" + std::string(name));\n}\n}\n";
-  if (!out.flush()) throw std::runtime_error("cannot write " + output.string());
+void writeSpirv(const std::filesystem::path& file, const Words& words) {
+  std::ofstream out(file, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(words.data()), std::streamsize(words.size() * sizeof(uint32_t)));
+  if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 
 }  // namespace
 
 int main(int count, char** arguments) try {
-  if (count < 3) throw std::runtime_error("usage: embed_spirv OUTPUT.cpp FILE.spv...");
-  embed(arguments[1], {arguments + 2, arguments + count});
+  if (count < 3) throw std::runtime_error("usage: no_contraction FOLDER FILE.spv...");
+  const std::filesystem::path folder = arguments[1];
+  std::filesystem::create_directories(folder);
+  for (int i = 2; i < count; ++i) {
+    const std::filesystem::path file = arguments[i];
+    writeSpirv(folder / file.filename(), withoutContraction(readSpirv(file)));
+  }
 } catch (const std::exception& error) {
-  std::fprintf(stderr, "embed_spirv: %s\n", error.what());
+  std::fprintf(stderr, "no_contraction: %s\n", error.what());
   return 1;
 }
