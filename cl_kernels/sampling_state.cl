@@ -25,7 +25,7 @@ typedef struct Corners {
 } Corners;
 
 static inline Corners triangleCorners(SceneRef scene, __global const uint* record_of, uint triangle) {
-  const TriangleRecord record = scene.triangles[record_of[triangle]];
+  const SceneTriangle record = scene.triangles[record_of[triangle]];
   Corners corners;
 #if SL_PACKET > 1
   corners.a = (float3)(record.vertices[0], record.vertices[1], record.vertices[2]);

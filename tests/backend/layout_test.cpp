@@ -93,11 +93,6 @@ std::vector<Layout> sharedLayouts() {
                  {SL_FIELD("vec4", target), SL_FIELD("vec4", a), SL_FIELD("vec4", b), SL_FIELD("vec4", c),
                   SL_FIELD("uvec4", number)}});
 #undef SL_OF
-  return all;
-}
-
-/// What an OpenCL program with packets of so many rays reads besides: tree and triangles.
-std::vector<Layout> sceneLayouts(uint32_t packet) {
 #define SL_OF BvhNode2
   Layout node{"BvhNode2", sizeof(BvhNode2), {SL_FIELD("vec4", x), SL_FIELD("vec4", y), SL_FIELD("vec4", z)}};
 #undef SL_OF
@@ -107,16 +102,20 @@ std::vector<Layout> sceneLayouts(uint32_t packet) {
   for (size_t i = 0; i < 2; ++i) {
     node.fields.push_back({fmt::format("count[{}]", i), "uint", offsetof(BvhNode2, count) + 4 * i});
   }
-  Layout record{"TriangleRecord", packet > 1 ? sizeof(TriangleRecord) : sizeof(TriangleRecordGpu), {}};
-  for (size_t i = 0; i < 9 && packet > 1; ++i) {
+  all.push_back(node);
+  Layout record{"TriangleRecord", sizeof(TriangleRecord), {}};
+  for (size_t i = 0; i < 9; ++i) {
     record.fields.push_back(
         {fmt::format("vertices[{}]", i), "float", offsetof(TriangleRecord, vertices) + 4 * i});
   }
-  if (packet > 1) record.fields.push_back({"id", "uint", offsetof(TriangleRecord, id)});
-  for (size_t i = 0; i < 3 && packet == 1; ++i) {
-    record.fields.push_back({fmt::format("v{}", i), "vec4", offsetof(TriangleRecordGpu, vertices) + 16 * i});
-  }
-  return {node, record};
+  record.fields.push_back({"id", "uint", offsetof(TriangleRecord, id)});
+  all.push_back(record);
+#define SL_OF TriangleRecordGpu
+  all.push_back({"TriangleRecordGpu",
+                 sizeof(TriangleRecordGpu),
+                 {SL_FIELD("vec4", v0), SL_FIELD("vec4", v1), SL_FIELD("vec4", v2)}});
+#undef SL_OF
+  return all;
 }
 
 /// What the host tells every Vulkan shader.
@@ -195,15 +194,12 @@ void expectWritten(const std::vector<uint32_t>& words, const Layout& layout) {
 
 /// Headers that the structs come from.
 const char* const kIncludes =
-    "#include \"core/shared/border.h\"\n#include \"core/shared/reverse.h\"\n"
+    "#include \"core/shared/border.h\"\n#include \"core/shared/bvh_node.h\"\n#include \"core/shared/reverse.h\"\n"
     "#include \"core/shared/view_ray.h\"\n";
 
-class OpenClLayout : public testing::TestWithParam<uint32_t> {};
-
-TEST_P(OpenClLayout, KernelsWriteFieldsWhereCppHasThem) {
-  std::vector<Layout> layouts = sharedLayouts();
-  for (const Layout& layout : sceneLayouts(GetParam())) layouts.push_back(layout);
-  std::string source = std::string(kIncludes) + "#include \"cl_kernels/scene.cl\"\n";
+TEST(OpenClLayout, KernelsWriteFieldsWhereCppHasThem) {
+  const std::vector<Layout> layouts = sharedLayouts();
+  std::string source = kIncludes;
   for (const Layout& layout : layouts) {
     source += fmt::format(
         "__kernel void write{0}(__global {0}* out) {{\n  uint i = (uint)get_global_id(0);\n  {0} s;\n{1}"
@@ -218,9 +214,7 @@ TEST_P(OpenClLayout, KernelsWriteFieldsWhereCppHasThem) {
   cl::CommandQueue queue(context, devices.front());
   cl::Program program(context, source);
   std::filesystem::current_path(SL_SOURCE_DIR);  // build options cannot quote a folder whose name has blanks
-  ASSERT_EQ(
-      program.build(devices.front(), fmt::format("-cl-std=CL1.2 -I. -DSL_PACKET={}", GetParam()).c_str()),
-      CL_SUCCESS)
+  ASSERT_EQ(program.build(devices.front(), "-cl-std=CL1.2 -I."), CL_SUCCESS)
       << program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(devices.front());
   for (const Layout& layout : layouts) {
     std::vector<uint32_t> words(kElements * layout.bytes / 4);
@@ -232,8 +226,6 @@ TEST_P(OpenClLayout, KernelsWriteFieldsWhereCppHasThem) {
     expectWritten(words, layout);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Packets, OpenClLayout, testing::Values(1u, 8u));
 
 /// Runs a shader over lists (vk_shaders/list.glsl) that writes to launch.rays.
 std::vector<uint32_t> runShader(const VulkanContext& context, const std::vector<uint32_t>& code,
