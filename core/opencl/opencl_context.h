@@ -3,6 +3,7 @@
 #include <CL/cl.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -101,12 +102,12 @@ class OpenClContext {
   void readFast(const ClBuffer& buffer, void* target, uint64_t bytes);
 
   /// Enqueues a kernel over `global` work items (rounded up to whole groups: kernels check their range).
-  /// local: work-group size, 0 lets the driver choose (then global is not rounded). args: ClBuffer, scalars
-  /// or structs, in order. global 0 does nothing.
+  /// local: work-group size, 0 lets the driver choose (then global is not rounded). args: ClBuffer, cl_mem,
+  /// scalars or structs, or arrays of handles of buffers, in order. global 0 does nothing.
   template <typename... Args>
   void launch(const ClKernel& kernel, uint64_t global, uint32_t local, const Args&... args) {
     cl_uint index = 0;
-    (setArgument(kernel, index++, args), ...);
+    (setArgument(kernel, index, args), ...);
     enqueue(kernel, global, local);
   }
   /// Waits for everything enqueued.
@@ -114,14 +115,18 @@ class OpenClContext {
 
  private:
   template <typename Arg>
-  void setArgument(const ClKernel& kernel, cl_uint index, const Arg& arg) {
+  void setArgument(const ClKernel& kernel, cl_uint& index, const Arg& arg) {
     if constexpr (std::is_same_v<Arg, ClBuffer>) {
-      const cl_mem memory = arg.get();
-      checkCl(clSetKernelArg(kernel.get(), index, sizeof memory, &memory), "clSetKernelArg");
+      setArgument(kernel, index, arg.get());
     } else {
       static_assert(std::is_trivially_copyable_v<Arg>);
-      checkCl(clSetKernelArg(kernel.get(), index, sizeof arg, &arg), "clSetKernelArg");
+      checkCl(clSetKernelArg(kernel.get(), index++, sizeof arg, &arg), "clSetKernelArg");
     }
+  }
+  template <size_t kCount>
+  void setArgument(const ClKernel& kernel, cl_uint& index,
+                   const std::array<ClHandle<cl_mem, clReleaseMemObject>, kCount>& buffers) {
+    for (const auto& buffer : buffers) setArgument(kernel, index, buffer.get());
   }
   void enqueue(const ClKernel& kernel, uint64_t global, uint32_t local);
 

@@ -31,7 +31,8 @@ SL_STRUCT(TriangleRecordGpu) {
   vec4 v2;
 };
 
-// A leaf in a word, as a single ray's walk keeps it: a bit, its references less one (3 bits), the first of them.
+// A leaf in a word, as a single ray's walk keeps it: a bit, its references less one (3 bits), the first of
+// them.
 SL_CONST uint kLeafBit = 0x80000000u;
 SL_CONST uint kLeafCountShift = 28u;
 SL_CONST uint kLeafFirstMask = 0x0fffffffu;

@@ -24,11 +24,12 @@ void packCorners(const Scene& scene, const uint32_t* ids, float* corners, size_t
 
 }  // namespace
 
-void VulkanScene::describe(VulkanLaunch& launch) const {
+void VulkanScene::describe(VulkanRunner& runner) const {
+  VulkanLaunch& launch = runner.launch;
   launch.tlas = tree.top.address;
   launch.part_starts = part_starts.address();
   launch.leaf_ids = leaf_ids.address();
-  launch.leaf_of = leaf_of.address();
+  runner.bind(StageBuffer::place_of, leaf_of);
   launch.corners = corners.address();
 }
 
