@@ -38,7 +38,7 @@ void say(const std::string& line) {
 PvsFile inputsOf(const BakeOptions& options, const Scene& scene) {
   PvsFile inputs;
   inputs.algorithm = kAlgorithmRevision;
-  inputs.intersector = intersectorOf(options.device);
+  inputs.intersector = intersectorOf(requireDevice(options.device));
   inputs.scene_hash = hashScene(scene);
   inputs.triangle_count = uint32_t(scene.triangles.size());
   inputs.scene_name = options.scene.filename().string();
@@ -97,7 +97,7 @@ void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, 
   }
 }
 
-NearestHits nearestHits(Device& device) {
+NearestHits nearestHits(Tracer& device) {
   return [&device](std::span<const Ray> rays, std::span<Hit> hits) { device.traceRays(rays, hits); };
 }
 
@@ -178,7 +178,7 @@ std::vector<uint8_t> readPicture(const std::filesystem::path& file) {
 }
 
 /// Draws the pictures, and adds them to the page if one is written. Returns the exit code.
-int drawCells(const BakeOptions& options, const Scene& scene, Device& device, BakePage& page) {
+int drawCells(const BakeOptions& options, const Scene& scene, Tracer& device, BakePage& page) {
   const TraceRays trace = nearestHits(device);
   const PvsFile pvs = loadPvs(options.out);
   const StopSignal stop;

@@ -12,7 +12,6 @@
 #include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
-#include "core/device/device.h"
 #include "core/device/registry/make_device.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
@@ -53,9 +52,9 @@ void draw(const PictureCommand& command) {
   requireScene(pvs, scene, command.pvs);
   requireDevice(command.device);
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
-  const std::unique_ptr<Device> device = makeDevice(command.device, scene, bvh);
+  const std::unique_ptr<Tracer> tracer = makeTracer(command.device, scene, bvh);
   const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
-    device->traceRays(rays, hits);
+    tracer->traceRays(rays, hits);
   };
 
   const bool inside = command.view == "inside";

@@ -8,6 +8,7 @@
 #include "core/device/gpu/gpu_set.h"
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
+#include "core/scene/scene.h"
 
 namespace sightline {
 
@@ -175,7 +176,6 @@ class GpuSampler : public Device {
   using Buffer = typename Api::Buffer;
 
   Api& api() { return api_; }
-  const Api& api() const { return api_; }
   StageLaunch& launch() { return api_.launch(); }
   uint32_t triangleCount() const { return triangle_count_; }
   /// For rays that no shader counted.

@@ -14,6 +14,8 @@ namespace sightline {
 
 namespace {
 
+constexpr const char* kEmbree = "embree";
+
 /// The kind alone, or with ":" and a selection.
 bool isOfKind(const std::string& name, const std::string& kind) {
   return name == kind || name.starts_with(kind + ":");
@@ -37,34 +39,35 @@ std::vector<DeviceInfo> listDevices() {
 }
 
 bool isDeviceName(const std::string& name) {
-  return name == "cpu" || name == "embree" || isOfKind(name, "opencl") || isOfKind(name, "vulkan");
+  return name == "cpu" || name == kEmbree || isOfKind(name, "opencl") || isOfKind(name, "vulkan");
 }
 
-void requireDevice(const std::string& name) {
-  if (isOfKind(name, "opencl")) {
-    requireOpenClDevice(name);
-  } else if (isOfKind(name, "vulkan")) {
-    selectVulkanDevice(name);
-  } else if (name == "embree") {
-    requireEmbree();
-  } else if (name != "cpu") {
-    throwUnknown(name);
-  }
+DeviceInfo requireDevice(const std::string& name) {
+  if (isOfKind(name, "opencl")) return requireOpenClDevice(name);
+  if (isOfKind(name, "vulkan")) return selectVulkanDevice(name).info;
+  if (name == kEmbree) return requireEmbree();
+  if (name == "cpu") return cpuDeviceInfo();
+  throwUnknown(name);
 }
 
-std::string intersectorOf(const std::string& name) {
-  if (!isOfKind(name, "vulkan")) return {};
-  const DeviceInfo info = selectVulkanDevice(name).info;
-  return info.name + ", " + info.driver;
+std::string whyNoBakes(const std::string& name) {
+  return name == kEmbree ? "embree traces rays for crosscheck and trace only; take cpu, opencl or vulkan"
+                         : "";
 }
 
 std::unique_ptr<Device> makeDevice(const std::string& name, const Scene& scene, const Bvh& bvh,
                                    const DeviceOptions& options) {
   if (name == "cpu") return makeCpuDevice(scene, bvh, options);
-  if (name == "embree") return makeEmbreeDevice(scene);
   if (isOfKind(name, "opencl")) return makeOpenClDevice(name, scene, bvh, options);
   if (isOfKind(name, "vulkan")) return makeVulkanDevice(name, scene, bvh, options);
+  if (const std::string why = whyNoBakes(name); !why.empty()) throw Error(why, kExitUsage);
   throwUnknown(name);
+}
+
+std::unique_ptr<Tracer> makeTracer(const std::string& name, const Scene& scene, const Bvh& bvh,
+                                   const DeviceOptions& options) {
+  if (name == kEmbree) return makeEmbreeTracer(scene);
+  return makeDevice(name, scene, bvh, options);
 }
 
 }  // namespace sightline

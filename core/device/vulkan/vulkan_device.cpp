@@ -11,7 +11,7 @@ namespace sightline {
 namespace {
 
 /// The sampler, which draws hemicubes besides.
-class VulkanDevice final : public GpuSampler<VulkanStages> {
+class VulkanDevice final : public GpuSampler<VulkanStages>, private HemicubeDrawer {
  public:
   using GpuSampler<VulkanStages>::GpuSampler;
 
@@ -20,7 +20,7 @@ class VulkanDevice final : public GpuSampler<VulkanStages> {
     GpuSampler::beginCell(faces, params);
   }
 
-  std::string whyNoRaster() const override { return api().context().whyNoRaster(); }
+  HemicubeDrawer& drawer() override { return *this; }
 
   void rasterize(std::span<const ViewFrame> hemicube, uint32_t resolution, float near_distance) override {
     VulkanRunner& runner = api().runner();
