@@ -31,7 +31,8 @@ static inline bool isLeaf(uint place) {
 }
 
 static inline uint placeOfChild(const BvhNode2* node, uint i) {
-  return node->count[i] == 0 ? node->child[i] : kLeafBit | (node->count[i] - 1) << kLeafCountShift | node->child[i];
+  if (node->count[i] == 0) return node->child[i];
+  return kLeafBit | (node->count[i] - 1) << kLeafCountShift | node->child[i];
 }
 
 /// Takes the last place off the stack that may have a hit as near as t. x: bits of the distance, y: place; at

@@ -17,7 +17,7 @@ void runItem(uint chunk) {
   }
   Buffer_uint bounds = Buffer_uint(SL_THE_LAUNCH.chunk_bounds);
   for (uint axis = 0u; axis < 3u; ++axis) {
-    bounds.at[6u * chunk + axis] = floatBitsToUint(low[axis]);
-    bounds.at[6u * chunk + 3u + axis] = floatBitsToUint(high[axis]);
+    bounds.at[kBoxFloats * chunk + axis] = floatBitsToUint(low[axis]);
+    bounds.at[kBoxFloats * chunk + 3u + axis] = floatBitsToUint(high[axis]);
   }
 }

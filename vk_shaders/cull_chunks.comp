@@ -19,7 +19,7 @@ void runItem(uint item) {
   uint chunk = item % SL_THE_LAUNCH.chunk_count;
   Buffer_ViewFrame views = Buffer_ViewFrame(SL_THE_LAUNCH.hemicube);
   ViewFrame view = views.at[item / SL_THE_LAUNCH.chunk_count];
-  Floats bounds = Floats(SL_THE_LAUNCH.chunk_bounds + 24ul * chunk);
+  Floats bounds = Floats(SL_THE_LAUNCH.chunk_bounds + 4ul * kBoxFloats * chunk);
   vec3 low = vec3(bounds.at[0], bounds.at[1], bounds.at[2]) - view.origin.xyz;
   vec3 high = vec3(bounds.at[3], bounds.at[4], bounds.at[5]) - view.origin.xyz;
   vec3 forward = view.forward.xyz;

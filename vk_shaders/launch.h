@@ -8,6 +8,8 @@ SL_NAMESPACE_BEGIN
 /// Neighbouring leaves that are drawn or left out together. Smaller ones fit a view's edge better, but a draw
 /// costs even where it is empty.
 SL_CONST uint kChunkTriangles = 2048u;
+/// Floats of the box around a chunk: lowest and highest corner.
+SL_CONST uint kBoxFloats = 6u;
 
 SL_STRUCT(VulkanLaunch) {
   StageLaunch numbers;
@@ -20,7 +22,7 @@ SL_STRUCT(VulkanLaunch) {
   // Hemicubes.
   uint64 hemicube;         ///< ViewFrame[5] of the hemicube that is drawn
   uint64 hemicubes;        ///< ViewFrame[5] a hemicube of the batch that is collected; 0: it was traced
-  uint64 chunk_bounds;     ///< float[6] a chunk: the box around it
+  uint64 chunk_bounds;     ///< float[kBoxFloats] a chunk: the box around it
   uint64 draws;            ///< VkDrawIndirectCommand[] a view of a chunk each
   uint64 raster_leaves;    ///< uint[] a pixel of the hemicube's images: leaf or kNoTriangle
   uint raster_resolution;  ///< of a hemicube's images

@@ -6,6 +6,6 @@ layout(local_size_x = SL_LIST_GROUP) in;
 void runItem(uint item);
 
 void main() {
-  uint item = first_item + gl_GlobalInvocationID.x;
-  if (item < item_end) runItem(item);
+  uint item = push.first_item + gl_GlobalInvocationID.x;
+  if (item < push.item_end) runItem(item);
 }

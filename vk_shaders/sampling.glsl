@@ -16,7 +16,7 @@ Corners cornersOf(uint triangle) {
 /// Border ray `index` (0 ..) of the border batch. Needs what border_edges wrote.
 Ray borderRayByIndex(uint index) {
   uint entry = borderEntryOf(kTheStage, index);
-  return borderRayAt(kTheStage, entry, borderRayOf(kTheStage, index, entry));
+  return borderRayAt(kTheStage, entry, borderRayNumber(kTheStage, index, entry));
 }
 
 /// The random ray that a slot of the launch's segment traces, and its offset there. false: the slot has none.

@@ -3,6 +3,7 @@
 #define SL_STATE_GLSL
 #extension GL_EXT_buffer_reference2 : require
 #extension GL_EXT_scalar_block_layout : require
+#include "core/shared/bvh_node.h"
 #include "core/shared/counters.h"
 #include "core/shared/stage_launch.h"
 
@@ -42,17 +43,15 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Flo
 };
 
 #include "vk_shaders/launch.h"
+#include "vk_shaders/push.h"
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LaunchAt {
   VulkanLaunch launch;
 };
 
-/// One dispatch of a launch: it runs the work items first_item .. item_end - 1.
 layout(push_constant, scalar) uniform Push {
-  uint64_t launch_address;
-  uint first_item;
-  uint item_end;
+  VulkanPush push;
 };
-#define SL_THE_LAUNCH LaunchAt(launch_address).launch
+#define SL_THE_LAUNCH LaunchAt(push.launch).launch
 
 #define sl_set_keys SL_THE_LAUNCH.keys.at
 #define sl_set_winner SL_THE_LAUNCH.winner.at
@@ -66,7 +65,7 @@ const uint kTheStage = 0u;
 
 /// Corner 0, 1 or 2 of the triangle in a leaf.
 vec3 leafCorner(uint leaf, uint corner) {
-  Floats corners = Floats(SL_THE_LAUNCH.corners + 36ul * leaf);
+  Floats corners = Floats(SL_THE_LAUNCH.corners + uint64(kCornerBytes) * leaf);
   return vec3(corners.at[3u * corner], corners.at[3u * corner + 1u], corners.at[3u * corner + 2u]);
 }
 

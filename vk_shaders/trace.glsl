@@ -88,6 +88,6 @@ void countRay(uint item) {
 void runItem(uint item);
 
 void main() {
-  uint item = first_item + itemIndex();
-  if (item < item_end) runItem(item);
+  uint item = push.first_item + itemIndex();
+  if (item < push.item_end) runItem(item);
 }

@@ -77,7 +77,6 @@ class OpenClContext {
   uint64_t maxAllocationBytes() const { return max_allocation_; }
   /// Whether a buffer of this size is within the limits.
   bool fits(uint64_t bytes) const { return bytes <= max_allocation_ && *allocated_ + bytes <= memory_limit_; }
-  uint32_t computeUnits() const { return compute_units_; }
   uint64_t allocatedBytes() const { return *allocated_; }
 
   /// From now on buffers take so many bytes in all at most.
@@ -87,8 +86,6 @@ class OpenClContext {
   /// The Error of a failed build holds the log.
   void build(const std::string& options);
   ClKernel kernel(const char* name) const;
-  /// Largest work group that the device runs this kernel with.
-  size_t maxWorkGroup(const ClKernel& kernel) const;
 
   /// what: for the message when it does not fit ("triangles of the scene"). 0 bytes: a small dummy.
   ClBuffer buffer(uint64_t bytes, const char* what);
@@ -135,7 +132,6 @@ class OpenClContext {
   bool is_cpu_ = false;
   uint64_t max_allocation_ = 0;
   uint64_t memory_limit_ = 0;  ///< bytes that all buffers may take
-  uint32_t compute_units_ = 0;
   std::shared_ptr<uint64_t> allocated_ = std::make_shared<uint64_t>(0);
   ClHandle<cl_context, clReleaseContext> context_;
   ClHandle<cl_command_queue, clReleaseCommandQueue> queue_;

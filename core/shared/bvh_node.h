@@ -31,6 +31,9 @@ SL_STRUCT(TriangleRecordGpu) {
   vec4 v2;
 };
 
+/// Corners of a triangle as drivers' trees read them: nine floats.
+SL_CONST uint kCornerBytes = 36u;
+
 // A leaf in a word, as a single ray's walk keeps it: a bit, its references less one (3 bits), the first of
 // them.
 SL_CONST uint kLeafBit = 0x80000000u;

@@ -111,7 +111,7 @@ SL_FUNC uint nextBorderEntry(SL_STAGE_PARAM, uint entry, uint index) {
 }
 
 /// Which ray of its entry's polygon border ray `index` is.
-SL_FUNC uint borderRayOf(SL_STAGE_PARAM, uint index, uint entry) {
+SL_FUNC uint borderRayNumber(SL_STAGE_PARAM, uint index, uint entry) {
   return isGvs(SL_LAUNCH(params)) ? index - entry * kGvsPositions : index - SL_BUFFER(border_starts, entry);
 }
 
@@ -132,7 +132,7 @@ SL_FUNC void thinDiscontinuitiesOf(SL_STAGE_PARAM, uint word) {
     uint bit = slLowestBit(bits);
     uint index = word * 32u + bit;
     entry = nextBorderEntry(SL_STAGE, entry, index);
-    uint place = borderPlace(borderRayOf(SL_STAGE, index, entry), borderSamplesAt(SL_STAGE, entry));
+    uint place = borderPlace(borderRayNumber(SL_STAGE, index, entry), borderSamplesAt(SL_STAGE, entry));
     bool follows = place > 0u && followsAnother(SL_STAGE, index);
     kept |= (keepsDiscontinuity(place, follows, params) ? 1u : 0u) << bit;
   }
@@ -144,7 +144,7 @@ SL_FUNC void appendDiscontinuityOf(SL_STAGE_PARAM, uint item) {
   uint index = SL_BUFFER(indices, item);
   uint entry = borderEntryOf(SL_STAGE, index);
   Discontinuity discontinuity;
-  discontinuity.ray = uvec4(SL_LAUNCH(border_first) + entry, borderRayOf(SL_STAGE, index, entry),
+  discontinuity.ray = uvec4(SL_LAUNCH(border_first) + entry, borderRayNumber(SL_STAGE, index, entry),
                             SL_BUFFER(border_hits, index), borderSamplesAt(SL_STAGE, entry));
   SL_BUFFER(discontinuities, SL_LAUNCH(waiting) + item) = discontinuity;
 }
@@ -160,7 +160,7 @@ SL_FUNC Ray batchRayAt(SL_STAGE_PARAM, uint index) {
   if (stage == kStageRandom) return segmentRayAt(SL_STAGE, index);
   if (stage == kStageReverse) return reverseRayAt(SL_STAGE, index - 1u);
   uint entry = borderEntryOf(SL_STAGE, index - 1u);
-  return borderRayAt(SL_STAGE, entry, borderRayOf(SL_STAGE, index - 1u, entry));
+  return borderRayAt(SL_STAGE, entry, borderRayNumber(SL_STAGE, index - 1u, entry));
 }
 
 /// Index of the ray that won the new triangle `item` of the batch; marks its slot as old.

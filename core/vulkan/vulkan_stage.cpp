@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/shared/counters.h"
 #include "core/vulkan/vulkan_commands.h"
 #include "vk_shaders/shaders.h"
 
@@ -81,7 +82,7 @@ VulkanStage VulkanStage::list(const VulkanContext& context, const std::string& n
   VulkanStage stage;
   stage.context_ = &context;
   stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
-  stage.createPipeline(name + ".comp", 64);
+  stage.createPipeline(name + ".comp", SL_LIST_GROUP);
   return stage;
 }
 

@@ -3,15 +3,9 @@
 #include <string>
 
 #include "core/vulkan/vulkan_context.h"
+#include "vk_shaders/push.h"
 
 namespace sightline {
-
-/// What all shaders get by push constants (vk_shaders/state.glsl).
-struct VulkanPush {
-  VkDeviceAddress launch;  ///< of the VulkanLaunch
-  uint32_t first_item;
-  uint32_t item_end;
-};
 
 /// The embedded shader of this name. Throws Error.
 VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name);
@@ -27,7 +21,7 @@ class VulkanStage {
   VulkanStage() = default;
   /// A tracing stage (trace_random, ...) of the context's kind. group_size: of ray queries.
   static VulkanStage tracing(const VulkanContext& context, const std::string& name, uint32_t group_size);
-  /// A compute shader ("count_bits") with groups of 64.
+  /// A compute shader ("count_bits") with groups of SL_LIST_GROUP.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
 
   /// Records the dispatch of the items 0 .. count - 1, in pieces that the device takes.
