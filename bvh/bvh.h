@@ -5,11 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "core/shared/bvh_node.h"
+
 namespace sightline {
 
 /// No tree has more inner nodes on a path of nodes2 than this, whatever the input: a traversal that keeps
 /// one entry a level needs a stack of kMaxDepth entries for nodes2 and of 7 * kMaxDepth for nodes8.
-inline constexpr uint32_t kMaxDepth = 96;
+inline constexpr uint32_t kMaxDepth = SL_MAX_DEPTH;
 
 /// How to build. The defaults suit triangle soups from 1 to 20 million triangles. Values out of range count
 /// as the nearest one in range.
@@ -23,21 +25,13 @@ struct BvhConfig {
 /// The child of an empty slot.
 inline constexpr uint32_t kNoChild = 0xffffffffu;
 
-/// Two children a node, with their boxes: for packets of rays and for GPUs. 64 bytes.
-struct BvhNode2 {
-  glm::vec4 x;  ///< low and high of child 0, low and high of child 1
-  glm::vec4 y;
-  glm::vec4 z;
-  uint32_t child[2];  ///< inner: index of the node; leaf: index of the first reference
-  uint32_t count[2];  ///< references in the leaf; 0: an inner node
-};
 static_assert(sizeof(BvhNode2) == 64);
 
 /// Eight children a node, bounds as structure of arrays: for single rays on SIMD CPUs. 256 bytes.
 struct BvhNode8 {
   float low_x[8], high_x[8], low_y[8], high_y[8], low_z[8], high_z[8];  ///< empty slot: low > high
   uint32_t child[8];                                                    ///< as in BvhNode2
-  uint32_t count[8];  ///< as in BvhNode2; an empty slot has count 0 and child kNoChild
+  uint32_t count[8];  ///< as in BvhNode2; an empty slot has count 0 and child 0xffffffff
 };
 static_assert(sizeof(BvhNode8) == 256);
 

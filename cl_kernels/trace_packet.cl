@@ -86,9 +86,9 @@ static inline void intersectRecord8(__global const TriangleRecord* record, Packe
 
 /// Visits the tree with all lanes; lanes with t < 0 take no part.
 static void tracePacket(SceneRef scene, Packet* p) {
-  float8 stack_near[SL_STACK_SIZE];
-  uint stack_child[SL_STACK_SIZE];
-  uint stack_count[SL_STACK_SIZE];
+  float8 stack_near[SL_MAX_DEPTH];
+  uint stack_child[SL_MAX_DEPTH];
+  uint stack_count[SL_MAX_DEPTH];
   uint size = 0;
   uint child = 0;
   uint count = 0;

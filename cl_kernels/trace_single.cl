@@ -6,7 +6,7 @@
 // the order (core/shared/triangle.h).
 #include "cl_kernels/scene.cl"
 
-static inline void intersectRecord(__global const TriangleRecord* record, ShearedRay ray, Hit* best) {
+static inline void intersectRecord(__global const SceneTriangle* record, ShearedRay ray, Hit* best) {
 #if SL_PACKET > 1
   __global const float* v = record->vertices;
   float t = intersectTriangle(ray, vec3(v[0], v[1], v[2]), vec3(v[3], v[4], v[5]), vec3(v[6], v[7], v[8]));
@@ -22,18 +22,17 @@ static inline void intersectRecord(__global const TriangleRecord* record, Sheare
   }
 }
 
-/// Where a walk goes on: an inner node by its index, or a leaf: the bit, its references less one (3 bits), the
-/// first of them (28 bits; kMostGpuReferences of core/trace/trace_layout.h).
-#define SL_LEAF 0x80000000u
+/// Where a walk goes on: an inner node by its index, or a leaf in a word (core/shared/bvh_node.h).
 #define SL_NO_LEAF 0u
 #define SL_WALK_END 0xffffffffu
 
 static inline bool isLeaf(uint place) {
-  return (place & SL_LEAF) != 0 && place != SL_WALK_END;
+  return (place & kLeafBit) != 0 && place != SL_WALK_END;
 }
 
 static inline uint placeOfChild(const BvhNode2* node, uint i) {
-  return node->count[i] == 0 ? node->child[i] : SL_LEAF | (node->count[i] - 1) << 28 | node->child[i];
+  if (node->count[i] == 0) return node->child[i];
+  return kLeafBit | (node->count[i] - 1) << kLeafCountShift | node->child[i];
 }
 
 /// Takes the last place off the stack that may have a hit as near as t. x: bits of the distance, y: place; at
@@ -47,8 +46,8 @@ static inline uint popPlace(const uint2* stack, uint* size, float t) {
 }
 
 static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best) {
-  const uint first = leaf & 0x0fffffffu;
-  const uint count = (leaf >> 28 & 7u) + 1;
+  const uint first = leaf & kLeafFirstMask;
+  const uint count = (leaf >> kLeafCountShift & 7u) + 1;
   for (uint i = 0; i < count; ++i) intersectRecord(&scene.triangles[first + i], ray, best);
 }
 
@@ -57,13 +56,13 @@ static Hit traceRay(SceneRef scene, Ray ray) {
   if (!hasDirection(ray)) return best;
   const BoxRay box_ray = boxRay(ray, scene.reach);
   const ShearedRay sheared = shearRay(ray);
-  uint2 stack[SL_STACK_SIZE + 1];
+  uint2 stack[SL_MAX_DEPTH + 1];
   stack[0] = (uint2)(0u, SL_WALK_END);
   uint size = 1;
   uint place = 0;
   uint leaf = SL_NO_LEAF;  // waits for its triangles to be intersected
   while (place != SL_WALK_END) {
-    while ((place & SL_LEAF) == 0) {
+    while ((place & kLeafBit) == 0) {
       const BvhNode2 node = scene.nodes[place];
       const float2 range0 =
           intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));

@@ -3,38 +3,27 @@
 // old.
 #extension GL_GOOGLE_include_directive : require
 #include "vk_shaders/list.glsl"
-#include "vk_shaders/sampling.glsl"
-#include "vk_shaders/views.glsl"
 #include "core/shared/hemicube.h"
 
 /// The ray through the centre of the pixel of sample `index` (0 ..) of a batch of hemicubes.
 Ray hemicubeRayAt(uint index) {
-  uint resolution = SL_LAUNCH.raster_resolution;
+  uint resolution = SL_THE_LAUNCH.raster_resolution;
   uint samples = hemicubeSamples(resolution);
   uint place = index % samples;
   uint view = index / samples * kHemicubeViews + hemicubeView(place, resolution);
   uint pixel = hemicubePixel(place, resolution);
-  return viewRay(Views(SL_LAUNCH.hemicubes).at[view], pixel % resolution, pixel / resolution, resolution);
+  ViewFrame frame = Buffer_ViewFrame(SL_THE_LAUNCH.hemicubes).at[view];
+  return viewRay(frame, pixel % resolution, pixel / resolution, resolution);
 }
 
 void runItem(uint item) {
-  uint triangle = Words(SL_LAUNCH.indices).at[item];
-  uint slot = findSlot(kTheSet, triangle);
-  uint index = Words(SL_LAUNCH.winner).at[slot];
-  Words(SL_LAUNCH.winner).at[slot] = kSlotOld;
-  uint stage = SL_LAUNCH.stage;
-  Ray ray;
-  if (SL_LAUNCH.hemicubes != 0ul) {
+  uint index = takeWinner(kTheStage, item);
+  bool drawn = SL_THE_LAUNCH.hemicubes != 0ul;
+  Ray ray = noRay();
+  if (drawn) {
     ray = hemicubeRayAt(index - 1u);
-  } else if (stage == kStageRandom) {
-    ray = segmentRayAt(index);
-  } else if (stage == kStageBorder) {
-    ray = borderRayAt(index - 1u);
   } else {
-    ray = reverseRayAt(index - 1u);
+    ray = batchRayAt(kTheStage, index);
   }
-  PvsEntry entry;
-  entry.origin_triangle = uvec4(floatBitsToUint(ray.origin.xyz), triangle);
-  entry.direction_stage = uvec4(floatBitsToUint(ray.direction.xyz), stage);
-  Entries(SL_LAUNCH.entries).at[SL_LAUNCH.list_end + item] = entry;
+  appendEntryOf(kTheStage, item, ray);
 }

@@ -2,11 +2,10 @@
 // The box around each chunk of kChunkTriangles leaves, six floats: lowest and highest corner.
 #extension GL_GOOGLE_include_directive : require
 #include "vk_shaders/list.glsl"
-#include "vk_shaders/sampling.glsl"
 
 void runItem(uint chunk) {
   uint first = chunk * kChunkTriangles;
-  uint end = min(first + kChunkTriangles, SL_LAUNCH.triangle_count);
+  uint end = min(first + kChunkTriangles, SL_THE_LAUNCH.triangle_count);
   vec3 low = leafCorner(first, 0u);
   vec3 high = low;
   for (uint leaf = first; leaf < end; ++leaf) {
@@ -16,9 +15,9 @@ void runItem(uint chunk) {
       high = max(high, point);
     }
   }
-  Words bounds = Words(SL_LAUNCH.chunk_bounds);
+  Buffer_uint bounds = Buffer_uint(SL_THE_LAUNCH.chunk_bounds);
   for (uint axis = 0u; axis < 3u; ++axis) {
-    bounds.at[6u * chunk + axis] = floatBitsToUint(low[axis]);
-    bounds.at[6u * chunk + 3u + axis] = floatBitsToUint(high[axis]);
+    bounds.at[kBoxFloats * chunk + axis] = floatBitsToUint(low[axis]);
+    bounds.at[kBoxFloats * chunk + 3u + axis] = floatBitsToUint(high[axis]);
   }
 }

@@ -9,7 +9,7 @@ void runItem(uint slot) {
   if (!slotRayAt(slot, offset, ray)) return;
   uint triangle = triangleOf(nearestHit(ray));
   if (triangle != kNoTriangle && !isInSet(kTheSet, triangle)) {
-    atomicAdd(Words(SL_LAUNCH.counters).at[kMissingCounter], 1u);
+    SL_STAGE_ADD(counters, kMissingCounter, 1u);
   }
   countRay(slot);
 }

@@ -3,7 +3,6 @@
 // the chunk's box lies wholly outside the view.
 #extension GL_GOOGLE_include_directive : require
 #include "vk_shaders/list.glsl"
-#include "vk_shaders/views.glsl"
 #include "core/shared/vector.h"
 
 /// Whether all of a box, low to high relative to the view point, lies behind the plane through it. On the safe side by
@@ -17,10 +16,10 @@ bool isBehind(vec3 normal, vec3 low, vec3 high) {
 }
 
 void runItem(uint item) {
-  uint chunk = item % SL_LAUNCH.chunk_count;
-  Views views = Views(SL_LAUNCH.hemicube);
-  ViewFrame view = views.at[item / SL_LAUNCH.chunk_count];
-  Floats bounds = Floats(SL_LAUNCH.chunk_bounds + 24ul * chunk);
+  uint chunk = item % SL_THE_LAUNCH.chunk_count;
+  Buffer_ViewFrame views = Buffer_ViewFrame(SL_THE_LAUNCH.hemicube);
+  ViewFrame view = views.at[item / SL_THE_LAUNCH.chunk_count];
+  Floats bounds = Floats(SL_THE_LAUNCH.chunk_bounds + 4ul * kBoxFloats * chunk);
   vec3 low = vec3(bounds.at[0], bounds.at[1], bounds.at[2]) - view.origin.xyz;
   vec3 high = vec3(bounds.at[3], bounds.at[4], bounds.at[5]) - view.origin.xyz;
   vec3 forward = view.forward.xyz;
@@ -28,8 +27,8 @@ void runItem(uint item) {
                  isBehind(forward + view.up.xyz, low, high) || isBehind(forward - view.up.xyz, low, high) ||
                  isBehind(views.at[0].forward.xyz, low, high);
   uint first = chunk * kChunkTriangles;
-  Words draws = Words(SL_LAUNCH.draws + 16ul * item);
-  draws.at[0] = 3u * (min(first + kChunkTriangles, SL_LAUNCH.triangle_count) - first);
+  Buffer_uint draws = Buffer_uint(SL_THE_LAUNCH.draws + 16ul * item);
+  draws.at[0] = 3u * (min(first + kChunkTriangles, SL_THE_LAUNCH.triangle_count) - first);
   draws.at[1] = outside ? 0u : 1u;
   draws.at[2] = 3u * first;
   draws.at[3] = 0u;

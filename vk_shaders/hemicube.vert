@@ -3,7 +3,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_multiview : require
 #include "vk_shaders/sampling.glsl"
-#include "vk_shaders/views.glsl"
 
 layout(location = 0) flat out uint leaf_of_vertex;
 out gl_PerVertex {
@@ -13,11 +12,11 @@ out gl_PerVertex {
 
 void main() {
   leaf_of_vertex = uint(gl_VertexIndex) / 3u;
-  Views views = Views(SL_LAUNCH.hemicube);
+  Buffer_ViewFrame views = Buffer_ViewFrame(SL_THE_LAUNCH.hemicube);
   ViewFrame view = views.at[gl_ViewIndex];
   vec3 corner = sub3(leafCorner(leaf_of_vertex, uint(gl_VertexIndex) % 3u), xyz3(view.origin));
   // Pixel (x, y) shows what viewRay meets. Reversed z without a far plane: depth is near / distance.
-  gl_Position = vec4(dot3(corner, xyz3(view.right)), -dot3(corner, xyz3(view.up)), SL_LAUNCH.raster_near,
+  gl_Position = vec4(dot3(corner, xyz3(view.right)), -dot3(corner, xyz3(view.up)), SL_THE_LAUNCH.raster_near,
                      dot3(corner, xyz3(view.forward)));
   // Of the sides only the half in front of the face counts; the rest need not be drawn.
   gl_ClipDistance[0] = dot3(corner, xyz3(views.at[0].forward));

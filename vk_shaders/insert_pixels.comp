@@ -5,9 +5,9 @@
 #include "core/shared/hemicube.h"
 
 void runItem(uint place) {
-  uint resolution = SL_LAUNCH.raster_resolution;
+  uint resolution = SL_THE_LAUNCH.raster_resolution;
   uint image = hemicubeView(place, resolution) * resolution * resolution;
-  uint leaf = Words(SL_LAUNCH.raster_leaves).at[image + hemicubePixel(place, resolution)];
+  uint leaf = Buffer_uint(SL_THE_LAUNCH.raster_leaves).at[image + hemicubePixel(place, resolution)];
   if (leaf == kNoTriangle) return;
-  insertHit(kTheSet, Words(SL_LAUNCH.leaf_ids).at[leaf], SL_LAUNCH.raster_first + place);
+  insertHit(kTheSet, Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[leaf], SL_THE_LAUNCH.raster_first + place);
 }

@@ -1,11 +1,11 @@
-// Compute shaders over lists: 64 work items a group, one item each.
+// Compute shaders over lists: a group of work items, one item each.
 #extension GL_GOOGLE_include_directive : require
-#include "vk_shaders/state.glsl"
-layout(local_size_x = 64) in;
+#include "vk_shaders/sampling.glsl"
+layout(local_size_x = SL_LIST_GROUP) in;
 
 void runItem(uint item);
 
 void main() {
-  uint item = first_item + gl_GlobalInvocationID.x;
-  if (item < item_end) runItem(item);
+  uint item = push.first_item + gl_GlobalInvocationID.x;
+  if (item < push.item_end) runItem(item);
 }

@@ -3,45 +3,70 @@
 #define SL_STATE_GLSL
 #extension GL_EXT_buffer_reference2 : require
 #extension GL_EXT_scalar_block_layout : require
-#include "vk_shaders/launch.h"
+#include "core/shared/bvh_node.h"
+#include "core/shared/counters.h"
+#include "core/shared/stage_launch.h"
 
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LaunchAt {
-  VulkanLaunch launch;
-};
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Words {
+// Arrays by address: Buffer_TYPE, as SL_ADDRESS names them.
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Buffer_uint {
   uint at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Buffer_Face {
+  Face at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Buffer_RandomSegment {
+  RandomSegment at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Buffer_PvsEntry {
+  PvsEntry at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Buffer_BorderEdge {
+  BorderEdge at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Buffer_Discontinuity {
+  Discontinuity at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Buffer_ReverseItem {
+  ReverseItem at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Buffer_Ray {
+  Ray at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer Buffer_Hit {
+  Hit at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Buffer_ViewFrame {
+  ViewFrame at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Floats {
   float at[];
 };
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Faces {
-  Face at[];
-};
-layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Segments {
-  RandomSegment at[];
-};
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Entries {
-  PvsEntry at[];
-};
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Rays {
-  Ray at[];
+
+#include "vk_shaders/launch.h"
+#include "core/vulkan/vulkan_push.h"
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LaunchAt {
+  VulkanLaunch launch;
 };
 
-/// One dispatch of a launch: it runs the work items first_item .. item_end - 1.
 layout(push_constant, scalar) uniform Push {
-  uint64_t launch_address;
-  uint first_item;
-  uint item_end;
+  VulkanPush push;
 };
-#define SL_LAUNCH LaunchAt(launch_address).launch
+#define SL_THE_LAUNCH LaunchAt(push.launch).launch
 
-#define sl_set_keys Words(SL_LAUNCH.keys).at
-#define sl_set_winner Words(SL_LAUNCH.winner).at
-#define sl_set_fresh Words(SL_LAUNCH.fresh).at
-#define sl_set_overflow Words(SL_LAUNCH.counters + 4u * kOverflowCounter).at
-#define sl_set_capacity SL_LAUNCH.capacity
+#define sl_set_keys SL_THE_LAUNCH.keys.at
+#define sl_set_winner SL_THE_LAUNCH.winner.at
+#define sl_set_fresh SL_THE_LAUNCH.fresh.at
+#define sl_set_overflow Buffer_uint(uint64_t(SL_THE_LAUNCH.counters) + 4u * kOverflowCounter).at
+#define sl_set_capacity SL_LAUNCH(capacity)
 #include "core/shared/set.h"
-/// The argument of the set's functions, which GLSL does not need.
+/// The arguments of the set's and of the stages' functions, which GLSL does not need.
 const uint kTheSet = 0u;
+const uint kTheStage = 0u;
+
+/// Corner 0, 1 or 2 of the triangle in a leaf.
+vec3 leafCorner(uint leaf, uint corner) {
+  Floats corners = Floats(SL_THE_LAUNCH.corners + uint64(kCornerBytes) * leaf);
+  return vec3(corners.at[3u * corner], corners.at[3u * corner + 1u], corners.at[3u * corner + 2u]);
+}
 
 #endif

@@ -17,7 +17,7 @@ struct LeafHit {
 const float kFarthest = 3.402823466e38f;
 
 uint leafOf(uint part, uint primitive) {
-  return Words(SL_LAUNCH.part_starts).at[part] + primitive;
+  return Buffer_uint(SL_THE_LAUNCH.part_starts).at[part] + primitive;
 }
 
 #if SL_RAY_QUERY
@@ -29,7 +29,7 @@ uint itemIndex() {
 
 LeafHit traceNearest(Ray ray) {
   rayQueryEXT query;
-  rayQueryInitializeEXT(query, accelerationStructureEXT(SL_LAUNCH.tlas), gl_RayFlagsOpaqueEXT, 0xffu,
+  rayQueryInitializeEXT(query, accelerationStructureEXT(SL_THE_LAUNCH.tlas), gl_RayFlagsOpaqueEXT, 0xffu,
                         ray.origin.xyz, 0.0f, ray.direction.xyz, kFarthest);
   while (rayQueryProceedEXT(query)) {
   }
@@ -50,7 +50,7 @@ uint itemIndex() {
 }
 
 LeafHit traceNearest(Ray ray) {
-  traceRayEXT(accelerationStructureEXT(SL_LAUNCH.tlas), gl_RayFlagsOpaqueEXT, 0xffu, 0u, 0u, 0u,
+  traceRayEXT(accelerationStructureEXT(SL_THE_LAUNCH.tlas), gl_RayFlagsOpaqueEXT, 0xffu, 0u, 0u, 0u,
               ray.origin.xyz, 0.0f, ray.direction.xyz, kFarthest, 0);
   if (found.y == kNoTriangle) return LeafHit(0.0f, kNoTriangle);
   return LeafHit(uintBitsToFloat(found.x), leafOf(found.y, found.z));
@@ -65,27 +65,29 @@ LeafHit nearestHit(Ray ray) {
 }
 
 uint triangleOf(LeafHit hit) {
-  return hit.leaf == kNoTriangle ? kNoTriangle : Words(SL_LAUNCH.leaf_ids).at[hit.leaf];
+  return hit.leaf == kNoTriangle ? kNoTriangle : Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[hit.leaf];
 }
 
-layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer Hits {
-  Hit at[];
-};
-
-void writeHit(uint item, LeafHit nearest) {
+/// Nearest hit of a ray, by triangle; t of a miss is 0.
+Hit nearestTriangle(Ray ray) {
+  LeafHit nearest = nearestHit(ray);
   Hit hit;
   hit.t = nearest.t;
   hit.triangle = triangleOf(nearest);
-  Hits(SL_LAUNCH.hits).at[item] = hit;
+  return hit;
+}
+
+void writeHit(uint item, Hit hit) {
+  SL_BUFFER(hits, item) = hit;
 }
 
 void countRay(uint item) {
-  atomicAdd(Words(SL_LAUNCH.counters).at[(item >> 5) % kRayCounters], 1u);
+  SL_STAGE_ADD(counters, (item >> 5) % kRayCounters, 1u);
 }
 
 void runItem(uint item);
 
 void main() {
-  uint item = first_item + itemIndex();
-  if (item < item_end) runItem(item);
+  uint item = push.first_item + itemIndex();
+  if (item < push.item_end) runItem(item);
 }

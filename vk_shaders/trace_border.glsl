@@ -5,16 +5,13 @@
 #include "vk_shaders/trace.glsl"
 
 void runItem(uint index) {
-  if (index >= Words(SL_LAUNCH.border_starts).at[SL_LAUNCH.border_count]) return;
-  Ray ray = borderRayAt(index);
-  LeafHit found_leaf = nearestHit(ray);
-  Hit hit;
-  hit.t = found_leaf.t;
-  hit.triangle = triangleOf(found_leaf);
-  Words(SL_LAUNCH.border_hits).at[index] = found_leaf.leaf;
+  if (index >= SL_BUFFER(border_starts, SL_LAUNCH(border_count))) return;
+  Ray ray = borderRayByIndex(index);
+  Hit hit = nearestTriangle(ray);
+  SL_BUFFER(border_hits, index) = hit.triangle;
   insertHit(kTheSet, hit.triangle, index + 1u);
-  if (isDiscontinuity(ray, hit, SL_LAUNCH.params)) {
-    atomicOr(Words(SL_LAUNCH.bits).at[index >> 5], 1u << (index & 31u));
+  if (isDiscontinuity(ray, hit, SL_LAUNCH(params))) {
+    atomicOr(SL_BUFFER(bits, index >> 5), 1u << (index & 31u));
   }
   if (hasDirection(ray)) countRay(index);
 }

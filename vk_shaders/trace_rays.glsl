@@ -4,5 +4,5 @@
 #include "vk_shaders/trace.glsl"
 
 void runItem(uint index) {
-  writeHit(index, nearestHit(Rays(SL_LAUNCH.rays).at[index]));
+  writeHit(index, nearestTriangle(SL_BUFFER(rays, index)));
 }

@@ -4,7 +4,7 @@
 #include "vk_shaders/trace.glsl"
 
 void runItem(uint index) {
-  Ray ray = reverseRayAt(index);
+  Ray ray = reverseRayAt(kTheStage, index);
   if (!hasDirection(ray)) return;
   insertHit(kTheSet, triangleOf(nearestHit(ray)), index + 1u);
   countRay(index);

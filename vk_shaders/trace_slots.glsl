@@ -7,5 +7,5 @@ void runItem(uint slot) {
   uint offset;
   Ray ray;
   if (!slotRayAt(slot, offset, ray)) return;
-  writeHit(slot, nearestHit(ray));
+  writeHit(slot, nearestTriangle(ray));
 }

@@ -98,10 +98,11 @@ void RayMaker::findDiscontinuities(Device& device, uint64_t rays) {
   });
   std::vector<Hit> hits(border.size());
   device.traceRays(border, hits);
+  const HostStage stage{&scene_, faces_, &params_};
   for (size_t i = 0; i < border.size(); ++i) {
     if (!hasDirection(border[i]) || !isDiscontinuity(border[i], hits[i], params_)) continue;
     const uint32_t occluder = hits[i].triangle;
-    discontinuities_.push_back(reverseItemOf(scene_, faces_, border[i], occluder, discontinuities_.size()));
+    discontinuities_.push_back(reverseItemPast(stage, border[i], occluder, discontinuities_.size()));
   }
 }
 
@@ -122,7 +123,7 @@ Ray RayMaker::ray(RayKind kind, uint64_t number) const {
     case RayKind::kReverse: {
       if (discontinuities_.empty()) return noRay();
       const ReverseItem& item = discontinuities_[random.pick(discontinuities_.size())];
-      return reverseRayOf(item, faces_, random.pick(reverseRayCount(params_)), params_);
+      return reverseRayOf(HostStage{&scene_, faces_, &params_}, item, random.pick(reverseRayCount(params_)));
     }
     default:
       return adversarialRay(kind, AdversarialScene{scene_, faces_, entries_, reach_}, random);

@@ -13,44 +13,31 @@ namespace {
 
 /// Names of the codes that users meet; others are told by number.
 const char* codeName(cl_int code) {
+#define SL_NAME(name) \
+  case name:          \
+    return #name;
   switch (code) {
-    case CL_DEVICE_NOT_AVAILABLE:
-      return "CL_DEVICE_NOT_AVAILABLE";
-    case CL_COMPILER_NOT_AVAILABLE:
-      return "CL_COMPILER_NOT_AVAILABLE";
-    case CL_MEM_OBJECT_ALLOCATION_FAILURE:
-      return "CL_MEM_OBJECT_ALLOCATION_FAILURE";
-    case CL_OUT_OF_RESOURCES:
-      return "CL_OUT_OF_RESOURCES";
-    case CL_OUT_OF_HOST_MEMORY:
-      return "CL_OUT_OF_HOST_MEMORY";
-    case CL_BUILD_PROGRAM_FAILURE:
-      return "CL_BUILD_PROGRAM_FAILURE";
-    case CL_INVALID_VALUE:
-      return "CL_INVALID_VALUE";
-    case CL_INVALID_BUFFER_SIZE:
-      return "CL_INVALID_BUFFER_SIZE";
-    case CL_INVALID_BUILD_OPTIONS:
-      return "CL_INVALID_BUILD_OPTIONS";
-    case CL_INVALID_KERNEL_NAME:
-      return "CL_INVALID_KERNEL_NAME";
-    case CL_INVALID_KERNEL_ARGS:
-      return "CL_INVALID_KERNEL_ARGS";
-    case CL_INVALID_ARG_INDEX:
-      return "CL_INVALID_ARG_INDEX";
-    case CL_INVALID_ARG_SIZE:
-      return "CL_INVALID_ARG_SIZE";
-    case CL_INVALID_ARG_VALUE:
-      return "CL_INVALID_ARG_VALUE";
-    case CL_INVALID_MEM_OBJECT:
-      return "CL_INVALID_MEM_OBJECT";
-    case CL_INVALID_WORK_GROUP_SIZE:
-      return "CL_INVALID_WORK_GROUP_SIZE";
-    case CL_INVALID_WORK_ITEM_SIZE:
-      return "CL_INVALID_WORK_ITEM_SIZE";
+    SL_NAME(CL_DEVICE_NOT_AVAILABLE)
+    SL_NAME(CL_COMPILER_NOT_AVAILABLE)
+    SL_NAME(CL_MEM_OBJECT_ALLOCATION_FAILURE)
+    SL_NAME(CL_OUT_OF_RESOURCES)
+    SL_NAME(CL_OUT_OF_HOST_MEMORY)
+    SL_NAME(CL_BUILD_PROGRAM_FAILURE)
+    SL_NAME(CL_INVALID_VALUE)
+    SL_NAME(CL_INVALID_BUFFER_SIZE)
+    SL_NAME(CL_INVALID_BUILD_OPTIONS)
+    SL_NAME(CL_INVALID_KERNEL_NAME)
+    SL_NAME(CL_INVALID_KERNEL_ARGS)
+    SL_NAME(CL_INVALID_ARG_INDEX)
+    SL_NAME(CL_INVALID_ARG_SIZE)
+    SL_NAME(CL_INVALID_ARG_VALUE)
+    SL_NAME(CL_INVALID_MEM_OBJECT)
+    SL_NAME(CL_INVALID_WORK_GROUP_SIZE)
+    SL_NAME(CL_INVALID_WORK_ITEM_SIZE)
     default:
       return "OpenCL error";
   }
+#undef SL_NAME
 }
 
 std::string buildLog(cl_program program, cl_device_id device) {
@@ -96,7 +83,6 @@ OpenClContext::OpenClContext(const std::string& selector) {
   is_cpu_ = (device.type & CL_DEVICE_TYPE_CPU) != 0;
   max_allocation_ = clDeviceValue<cl_ulong>(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
   memory_limit_ = info_.memory_bytes;
-  compute_units_ = clDeviceValue<cl_uint>(device_, CL_DEVICE_MAX_COMPUTE_UNITS);
   cl_int code = CL_SUCCESS;
   context_ =
       ClHandle<cl_context, clReleaseContext>(clCreateContext(nullptr, 1, &device_, nullptr, nullptr, &code));
@@ -124,14 +110,6 @@ ClKernel OpenClContext::kernel(const char* name) const {
   ClKernel kernel(clCreateKernel(program_.get(), name, &code));
   checkCl(code, (std::string("clCreateKernel ") + name).c_str());
   return kernel;
-}
-
-size_t OpenClContext::maxWorkGroup(const ClKernel& kernel) const {
-  size_t size = 0;
-  checkCl(
-      clGetKernelWorkGroupInfo(kernel.get(), device_, CL_KERNEL_WORK_GROUP_SIZE, sizeof size, &size, nullptr),
-      "clGetKernelWorkGroupInfo");
-  return size;
 }
 
 ClBuffer OpenClContext::buffer(uint64_t bytes, const char* what) {

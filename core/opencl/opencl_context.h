@@ -3,6 +3,7 @@
 #include <CL/cl.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -76,7 +77,6 @@ class OpenClContext {
   uint64_t maxAllocationBytes() const { return max_allocation_; }
   /// Whether a buffer of this size is within the limits.
   bool fits(uint64_t bytes) const { return bytes <= max_allocation_ && *allocated_ + bytes <= memory_limit_; }
-  uint32_t computeUnits() const { return compute_units_; }
   uint64_t allocatedBytes() const { return *allocated_; }
 
   /// From now on buffers take so many bytes in all at most.
@@ -86,8 +86,6 @@ class OpenClContext {
   /// "-cl-std=CL1.2". The Error of a failed build holds the log.
   void build(const char* source, const std::string& options);
   ClKernel kernel(const char* name) const;
-  /// Largest work group that the device runs this kernel with.
-  size_t maxWorkGroup(const ClKernel& kernel) const;
 
   /// what: for the message when it does not fit ("triangles of the scene"). 0 bytes: a small dummy.
   ClBuffer buffer(uint64_t bytes, const char* what);
@@ -101,12 +99,12 @@ class OpenClContext {
   void readFast(const ClBuffer& buffer, void* target, uint64_t bytes);
 
   /// Enqueues a kernel over `global` work items (rounded up to whole groups: kernels check their range).
-  /// local: work-group size, 0 lets the driver choose (then global is not rounded). args: ClBuffer, scalars
-  /// or structs, in order. global 0 does nothing.
+  /// local: work-group size, 0 lets the driver choose (then global is not rounded). args: ClBuffer, cl_mem,
+  /// scalars or structs, or arrays of handles of buffers, in order. global 0 does nothing.
   template <typename... Args>
   void launch(const ClKernel& kernel, uint64_t global, uint32_t local, const Args&... args) {
     cl_uint index = 0;
-    (setArgument(kernel, index++, args), ...);
+    (setArgument(kernel, index, args), ...);
     enqueue(kernel, global, local);
   }
   /// Waits for everything enqueued.
@@ -114,14 +112,18 @@ class OpenClContext {
 
  private:
   template <typename Arg>
-  void setArgument(const ClKernel& kernel, cl_uint index, const Arg& arg) {
+  void setArgument(const ClKernel& kernel, cl_uint& index, const Arg& arg) {
     if constexpr (std::is_same_v<Arg, ClBuffer>) {
-      const cl_mem memory = arg.get();
-      checkCl(clSetKernelArg(kernel.get(), index, sizeof memory, &memory), "clSetKernelArg");
+      setArgument(kernel, index, arg.get());
     } else {
       static_assert(std::is_trivially_copyable_v<Arg>);
-      checkCl(clSetKernelArg(kernel.get(), index, sizeof arg, &arg), "clSetKernelArg");
+      checkCl(clSetKernelArg(kernel.get(), index++, sizeof arg, &arg), "clSetKernelArg");
     }
+  }
+  template <size_t kCount>
+  void setArgument(const ClKernel& kernel, cl_uint& index,
+                   const std::array<ClHandle<cl_mem, clReleaseMemObject>, kCount>& buffers) {
+    for (const auto& buffer : buffers) setArgument(kernel, index, buffer.get());
   }
   void enqueue(const ClKernel& kernel, uint64_t global, uint32_t local);
 
@@ -130,7 +132,6 @@ class OpenClContext {
   bool is_cpu_ = false;
   uint64_t max_allocation_ = 0;
   uint64_t memory_limit_ = 0;  ///< bytes that all buffers may take
-  uint32_t compute_units_ = 0;
   std::shared_ptr<uint64_t> allocated_ = std::make_shared<uint64_t>(0);
   ClHandle<cl_context, clReleaseContext> context_;
   ClHandle<cl_command_queue, clReleaseCommandQueue> queue_;

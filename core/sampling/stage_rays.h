@@ -12,6 +12,7 @@
 
 // The rays of the sampling stages on the host: for the cpu device and for whoever wants to trace the rays of
 // a bake by other means.
+#include "core/shared/stage_glue.inl"
 namespace sightline {
 
 /// A ray with its index (1 ..) in a batch.
@@ -44,16 +45,12 @@ inline vec3 cornerOf(const Scene& scene, uint32_t triangle, int corner) {
   return scene.positions[scene.triangles[triangle][corner]];
 }
 
-inline vec3 entryOrigin(const PvsEntry& entry) {
-  const uvec4 bits = entry.origin_triangle;
-  return vec3(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z));
+inline Corners cornersOf(const Scene& scene, uint32_t triangle) {
+  return {cornerOf(scene, triangle, 0), cornerOf(scene, triangle, 1), cornerOf(scene, triangle, 2)};
 }
 
-/// The ray that found the entry's triangle.
-inline Ray entryRay(const PvsEntry& entry) {
-  const uvec4 bits = entry.direction_stage;
-  return {vec4(entryOrigin(entry), 0),
-          vec4(uintBitsToFloat(bits.x), uintBitsToFloat(bits.y), uintBitsToFloat(bits.z), 0)};
+inline vec3 entryOrigin(const PvsEntry& entry) {
+  return vectorOfBits(entry.origin_triangle);
 }
 
 /// Samples between the ends of each long edge of the border polygon of an entry's triangle.
@@ -127,31 +124,28 @@ class BorderRays {
   Ray operator()(uint32_t number) {
     if (made_ == 0 || number < starts_[entry_] || number >= starts_[entry_ + 1]) {
       entry_ = entryOf(number);
-      samples_ = borderSamplesOf(*scene_, entries_[entry_], *params_);
       made_ = 0;
     }
-    const uint32_t k = rayOf(number, entry_);
-    const vec3 origin = entryOrigin(entries_[entry_]);
-    if (isGvs(*params_)) {
-      const uint32_t first = gvsFirstVertex(k), second = gvsSecondVertex(k);
-      const vec3 from = gvsVertexOf(side(first / 3), first);
-      return gvsBorderRay(from, gvsVertexOf(side(second / 3), second), k, origin, *params_);
-    }
-    return borderRay(side(borderSide(k, samples_)), k, origin, *params_);
+    return borderRayAt(*this, entry_, rayOf(number, entry_));
   }
 
- private:
-  const BorderEdge& side(uint32_t side) {
+  // What borderRayAt reads.
+  const StageParams& params() const { return *params_; }
+  uint32_t border_first() const { return 0; }
+  const PvsEntry& entries(uint32_t entry) const { return entries_[entry]; }
+  const BorderEdge& border_edges(uint32_t number) {
+    const uint32_t side = number - entry_ * 3;
     if ((made_ >> side & 1) == 0) sides_[side] = borderEdgeOf(*scene_, entries_[entry_], side, *params_);
     made_ |= 1u << side;
     return sides_[side];
   }
 
+ private:
   const Scene* scene_;
   std::span<const PvsEntry> entries_;
   std::span<const uint64_t> starts_;
   const StageParams* params_;
-  uint32_t entry_ = 0, samples_ = 0;
+  uint32_t entry_ = 0;
   uint32_t made_ = 0;  ///< which sides of the entry's polygon there are, a bit each
   BorderEdge sides_[3];
 };
@@ -207,78 +201,41 @@ inline void appendDiscontinuitiesOf(const Scene& scene, std::span<const PvsEntry
   }
 }
 
-/// The item of a discontinuity of gvs++ for its reverse rays. border: the ray that met it; number: its
-/// running number in the cell.
-inline ReverseItem reverseItemOf(const Scene& scene, std::span<const Face> faces, const Ray& border,
-                                 uint32_t occluder, uint64_t number) {
-  const vec3 target = add3(xyz3(border.origin), xyz3(border.direction));
-  uint32_t mask = 0;
-  for (size_t f = 0; f < faces.size(); ++f) mask |= (faceLooksAt(faces[f], target) ? 1u : 0u) << f;
-  const ReverseItem item = openItem(target, number, mask);
-  if (occluder == kNoTriangle) return item;
-  return occludedItem(item, cornerOf(scene, occluder, 0), cornerOf(scene, occluder, 1),
-                      cornerOf(scene, occluder, 2));
-}
+/// What the glue of reverse and random rays reads.
+struct HostStage {
+  const Scene* scene = nullptr;
+  std::span<const Face> face_list = {};
+  const StageParams* stage_params = nullptr;
+  std::span<const PvsEntry> entry_list = {};         ///< the whole list
+  std::span<const Discontinuity> waiting = {};       ///< that get reverse rays
+  uint64_t first_number = 0;                         ///< running number of the first of them in the cell
+  std::span<const RandomSegment> segment_list = {};  ///< of the batch
 
-/// The item of a discontinuity that waits, by the method of the parameters. entries: the whole list.
-inline ReverseItem reverseItemOf(const Scene& scene, std::span<const Face> faces,
-                                 std::span<const PvsEntry> entries, const Discontinuity& discontinuity,
-                                 uint64_t number, const StageParams& params) {
-  const uvec4 ray = discontinuity.ray;
-  const PvsEntry& entry = entries[ray.x];
-  const Ray border = borderRayOf(scene, entry, ray.y, ray.w, params);
-  const ReverseItem item = reverseItemOf(scene, faces, border, ray.z, number);
-  if (!isGvs(params)) return item;
-  const uint32_t t = entry.origin_triangle.w;
-  return gvsReverseItem(item, entryRay(entry), cornerOf(scene, t, 0), cornerOf(scene, t, 1),
-                        cornerOf(scene, t, 2), params);
-}
+  const StageParams& params() const { return *stage_params; }
+  uint64_t items_before() const { return first_number; }
+  uint32_t segment_count() const { return static_cast<uint32_t>(segment_list.size()); }
+  const Face& faces(uint32_t i) const { return face_list[i]; }
+  const PvsEntry& entries(uint32_t i) const { return entry_list[i]; }
+  const Discontinuity& discontinuities(uint32_t i) const { return waiting[i]; }
+  const RandomSegment& segments(uint32_t i) const { return segment_list[i]; }
+  Corners corners(uint32_t triangle) const { return cornersOf(*scene, triangle); }
+};
 
-/// Reverse ray k of a discontinuity; without direction where no face looks at it, or its start point sees
-/// nothing but the occluder, or, in the original method, lies outside the cell, or the cell does not look.
-inline Ray reverseRayOf(const ReverseItem& item, std::span<const Face> faces, uint32_t k,
-                        const StageParams& params) {
-  if (item.number.z == 0) return noRay();
-  if (!isGvs(params)) return reverseRay(item, faces[reverseFace(item, k)], k, params);
-  Ray ray = noRay();
-  for (size_t f = 0; f < faces.size() && !hasDirection(ray); ++f) {
-    ray = gvsReverseRay(item, faces[f], k, params);
-  }
-  return ray;
-}
-
-/// The reverse rays of discontinuities by number, reverseRayCount each. Remembers the last item, so call it
-/// with ascending numbers.
-class ReverseRays {
+/// The reverse rays of the stage's discontinuities by number, reverseRayCount each. Remembers the last item,
+/// so call it with ascending numbers.
+class ReverseRays : public HostStage {
  public:
-  /// entries: the whole list; first_number: running number of the first discontinuity in the cell.
-  ReverseRays(const Scene& scene, std::span<const Face> faces, std::span<const PvsEntry> entries,
-              std::span<const Discontinuity> discontinuities, uint64_t first_number,
-              const StageParams& params)
-      : scene_(&scene),
-        faces_(faces),
-        entries_(entries),
-        discontinuities_(discontinuities),
-        first_number_(first_number),
-        params_(&params) {}
+  explicit ReverseRays(const HostStage& stage) : HostStage(stage) {}
 
-  BatchRay operator()(uint32_t number) {
-    const uint32_t per_item = reverseRayCount(*params_);
-    if (place_ != number / per_item) {
-      place_ = number / per_item;
-      item_ = reverseItemOf(*scene_, faces_, entries_, discontinuities_[place_], first_number_ + place_,
-                            *params_);
-    }
-    return {reverseRayOf(item_, faces_, number % per_item, *params_), number + 1};
+  BatchRay operator()(uint32_t number) { return {reverseRayAt(*this, number), number + 1}; }
+
+  // What reverseRayAt reads besides.
+  const ReverseItem& reverse_items(uint32_t place) {
+    if (place_ != place) item_ = reverseItemAt(*this, place_ = place);
+    return item_;
   }
 
  private:
-  const Scene* scene_;
-  std::span<const Face> faces_;
-  std::span<const PvsEntry> entries_;
-  std::span<const Discontinuity> discontinuities_;
-  uint64_t first_number_;
-  const StageParams* params_;
   uint32_t place_ = kNoTriangle;  ///< which discontinuity's item there is
   ReverseItem item_{};
 };

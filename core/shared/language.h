@@ -51,10 +51,20 @@ typedef struct SetRef {
   volatile __global uint* overflow;
   uint capacity;
 } SetRef;
+// A stage's buffers, launch and triangles (stage_launch.h), in StageRef of cl_kernels/stage.cl.
+#define SL_STAGE_PARAM const StageRef* sl_stage
+#define SL_STAGE sl_stage
+#define SL_BUFFER(name, i) sl_stage->name[i]
+#define SL_LAUNCH(field) sl_stage->launch.field
+#define SL_CORNERS(triangle) cornersOf(sl_stage, (triangle))
+#define SL_STAGE_SET setOf(sl_stage)
+#define SL_STAGE_ADD(name, i, value) atomic_add(&sl_stage->name[i], (value))
 #define slUint(x) ((uint)(x))
 #define slUint64(x) ((uint64)(x))
 #define slFloat(x) ((float)(x))
 #define slDivide(a, b) ((a) / (b))
+#define slBitCount(x) popcount(x)
+#define slLowestBit(x) (31u - clz((x) & (0u - (x))))
 
 #elif defined(__cplusplus)
 
@@ -118,6 +128,14 @@ inline uint slAtomicCas(uint& slot, uint expected, uint desired) {
   std::atomic_ref<uint>(sl_set.field[i]).fetch_or((bits), std::memory_order_relaxed)
 #define SL_SET_ADD(field, i, value) \
   std::atomic_ref<uint>(sl_set.field[i]).fetch_add((value), std::memory_order_relaxed)
+   // On the host a stage is an object with a function for each buffer and number that it has.
+#define SL_STAGE_PARAM auto&& sl_stage
+#define SL_STAGE sl_stage
+#define SL_BUFFER(name, i) sl_stage.name(i)
+#define SL_LAUNCH(field) sl_stage.field()
+#define SL_CORNERS(triangle) sl_stage.corners(triangle)
+   /// Buffers in a launch are addresses in C++, in order (vk_shaders/launch.h).
+#define SL_ADDRESSES(buffers, count) uint64 addresses[count];
 #define SL_STRUCT(S) struct S
 #define SL_FUNC inline
 #define SL_CONST constexpr
@@ -141,7 +159,19 @@ inline uint slAtomicCas(uint& slot, uint expected, uint desired) {
 #define SL_SET_CAS(field, i, expected, desired) atomicCompSwap(sl_set_##field[i], (expected), (desired))
 #define SL_SET_OR(field, i, bits) atomicOr(sl_set_##field[i], (bits))
 #define SL_SET_ADD(field, i, value) atomicAdd(sl_set_##field[i], (value))
+// A stage's launch is the whole shader's (vk_shaders/state.glsl); so this argument too is a dummy.
+#define SL_STAGE_PARAM uint sl_stage
+#define SL_STAGE sl_stage
+#define SL_BUFFER(name, i) SL_THE_LAUNCH.name.at[i]
+#define SL_LAUNCH(field) SL_THE_LAUNCH.numbers.field
+#define SL_CORNERS(triangle) cornersOf(triangle)
+#define SL_STAGE_SET kTheSet
+#define SL_STAGE_ADD(name, i, value) atomicAdd(SL_THE_LAUNCH.name.at[i], (value))
+#define SL_ADDRESS(type, name) Buffer_##type name;
+#define SL_ADDRESSES(buffers, count) buffers(SL_ADDRESS)
 #define slUint(x) uint(x)
+#define slBitCount(x) uint(bitCount(x))
+#define slLowestBit(x) uint(findLSB(x))
 #define slUint64(x) uint64_t(x)
 #define slFloat(x) float(x)
 

@@ -44,8 +44,8 @@ SL_FUNC vec3 reverseOrigin(Face face, uint64 item, uint k, StageParams params) {
 
 /// A discontinuity as it waits for its reverse rays.
 SL_STRUCT(Discontinuity) {
-  uvec4 ray;  ///< x: entry whose border ray met it, y: which ray of its polygon, z: what was hit: a triangle,
-              ///< in Vulkan its leaf, or kNoTriangle, w: samples between the ends of the polygon's long edges
+  uvec4 ray;  ///< x: entry whose border ray met it, y: which ray of its polygon, z: what was hit: a triangle
+              ///< or kNoTriangle, w: samples between the ends of the polygon's long edges
 };
 
 /// A discontinuity: all that its reverse rays have in common.

@@ -28,6 +28,13 @@ SL_STRUCT(Hit) {
   uint triangle;  ///< id in file order, or kNoTriangle
 };
 
+/// The corners of a triangle.
+SL_STRUCT(Corners) {
+  vec3 a;
+  vec3 b;
+  vec3 c;
+};
+
 /// One rectangle of a view cell's surface: points corner + u * edge_u + v * edge_v, u and v in [0, 1].
 ///
 ///        v

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <bit>
-
 #include "core/base/error.h"
 
 namespace sightline {
@@ -18,10 +16,9 @@ void pack(const glm::vec3 (&vertices)[3], uint32_t id, TriangleRecord& record) {
 }
 
 void pack(const glm::vec3 (&vertices)[3], uint32_t id, TriangleRecordGpu& record) {
-  for (int i = 0; i < 3; ++i) {
-    for (int axis = 0; axis < 3; ++axis) record.vertices[i][axis] = vertices[i][axis];
-    record.vertices[i][3] = i == 0 ? std::bit_cast<float>(id) : 0.0f;
-  }
+  record.v0 = vec4(vertices[0], uintBitsToFloat(id));
+  record.v1 = vec4(vertices[1], 0.0f);
+  record.v2 = vec4(vertices[2], 0.0f);
 }
 
 template <typename Record>

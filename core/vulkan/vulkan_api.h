@@ -9,7 +9,6 @@ namespace sightline {
   X(vkEnumerateInstanceVersion)       \
   X(vkEnumerateInstanceLayerProperties) X(vkEnumerateInstanceExtensionProperties) X(vkCreateInstance)
 #define SL_VULKAN_INSTANCE_FUNCTIONS(X)       \
-  X(vkDestroyInstance)                        \
   X(vkEnumeratePhysicalDevices)               \
   X(vkGetPhysicalDeviceProperties2)           \
   X(vkGetPhysicalDeviceFeatures2)             \

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "core/shared/counters.h"
 #include "core/vulkan/vulkan_commands.h"
 
 namespace sightline {
@@ -76,7 +77,7 @@ VulkanStage VulkanStage::list(const VulkanContext& context, const std::string& n
   VulkanStage stage;
   stage.context_ = &context;
   stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
-  stage.group_size_ = 64;
+  stage.group_size_ = SL_LIST_GROUP;
   stage.list_name_ = name + ".comp";
   return stage;
 }

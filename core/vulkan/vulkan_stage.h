@@ -3,15 +3,9 @@
 #include <string>
 
 #include "core/vulkan/vulkan_context.h"
+#include "core/vulkan/vulkan_push.h"
 
 namespace sightline {
-
-/// What the shaders of stages get by push constants.
-struct VulkanPush {
-  VkDeviceAddress launch;  ///< of what the launch is about
-  uint32_t first_item;
-  uint32_t item_end;
-};
 
 /// The shader of this name of the context's program. Throws Error.
 VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name);
@@ -27,8 +21,8 @@ class VulkanStage {
   VulkanStage() = default;
   /// A compute shader ("count_bits.comp"). group_size: work items, its constant 0.
   static VulkanStage compute(const VulkanContext& context, const std::string& name, uint32_t group_size);
-  /// The same of shader "NAME.comp" with groups of 64, compiled when it is first recorded, since who only traces
-  /// rays needs none of them.
+  /// The same of shader "NAME.comp" with groups of SL_LIST_GROUP, compiled when it is first recorded, since who
+  /// only traces rays needs none of them.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
   /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each.
   static VulkanStage rays(const VulkanContext& context, const std::string& generation,

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/shared/bvh_node.h"
+
 namespace sightline {
 namespace {
-
-constexpr uint64_t kCornerBytes = 36;
 
 /// Opaque triangles without indices.
 VkAccelerationStructureGeometryKHR triangleGeometry(VkDeviceAddress corners, uint32_t triangles) {
@@ -184,10 +184,10 @@ VulkanTree buildVulkanTree(const VulkanContext& context, const VulkanBuffer& cor
   TreeBuilder builder(context);
   std::vector<VkAccelerationStructureInstanceKHR> instances;
   for (const LeafPart& part : parts) {
-    const auto geometry = triangleGeometry(corners.address() + part.first * kCornerBytes, part.count);
+    const auto geometry =
+        triangleGeometry(corners.address() + uint64_t(part.first) * kCornerBytes, part.count);
     VulkanStructure loose =
         builder.build(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry, part.count);
-    tree.built_bytes += loose.memory.bytes();
     tree.parts.push_back(builder.compact(std::move(loose)));
     tree.bytes += tree.parts.back().memory.bytes();
     instances.push_back(instanceOf(tree.parts.back(), static_cast<uint32_t>(instances.size())));
@@ -203,7 +203,6 @@ VulkanTree buildVulkanTree(const VulkanContext& context, const VulkanBuffer& cor
                     static_cast<uint32_t>(instances.size()));
   builder.commands().finish();
   tree.bytes += tree.top.memory.bytes();
-  tree.built_bytes += tree.top.memory.bytes();
   tree.build_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return tree;
 }

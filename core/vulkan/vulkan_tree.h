@@ -17,8 +17,7 @@ struct VulkanTree {
   std::vector<VulkanStructure> parts;
   VulkanStructure top;
   VulkanBuffer instances;
-  uint64_t bytes = 0;        ///< of all structures, after compaction
-  uint64_t built_bytes = 0;  ///< the same before compaction
+  uint64_t bytes = 0;  ///< of all structures, after compaction
   double build_seconds = 0;
 };
 

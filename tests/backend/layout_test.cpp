@@ -26,9 +26,10 @@ namespace sightline {
 namespace {
 
 struct Field {
-  std::string name, type;  ///< type: vec4, uvec4, uint64, float or uint
+  std::string name, type;  ///< type: vec4, uvec4, uint64, float, uint or a buffer's of vk_shaders/state.glsl
   size_t offset;           ///< in C++
-  uint32_t words() const { return type == "uint64" ? 2 : type.ends_with("vec4") ? 4 : 1; }
+  bool isAddress() const { return type.starts_with("Buffer_"); }
+  uint32_t words() const { return type == "uint64" || isAddress() ? 2 : type.ends_with("vec4") ? 4 : 1; }
 };
 
 struct Layout {
@@ -41,6 +42,27 @@ struct Layout {
   Field {                                \
 #field, type, offsetof(SL_OF, field) \
   }
+
+/// The numbers of a launch, in all three languages, as part of `prefix`.
+std::vector<Field> launchFields(const std::string& prefix) {
+#define SL_OF StageLaunch
+  std::vector<Field> fields = {SL_FIELD("uvec4", params.counts),   SL_FIELD("uvec4", params.shifts),
+                               SL_FIELD("vec4", params.distances), SL_FIELD("uvec4", params.method),
+                               SL_FIELD("vec4", params.spacing),   SL_FIELD("vec4", params.look),
+                               SL_FIELD("uvec4", segment.range),   SL_FIELD("uvec4", segment.batch),
+                               SL_FIELD("uvec4", segment.digits),  SL_FIELD("uvec4", segment.coefficients),
+                               SL_FIELD("uvec4", shifts),          SL_FIELD("uint64", items_before),
+                               SL_FIELD("uint", capacity),         SL_FIELD("uint", border_first),
+                               SL_FIELD("uint", border_count),     SL_FIELD("uint", waiting),
+                               SL_FIELD("uint", reverse_first),    SL_FIELD("uint", stage),
+                               SL_FIELD("uint", segment_count),    SL_FIELD("uint", list_end),
+                               SL_FIELD("uint", word_count),       SL_FIELD("uint", block_count),
+                               SL_FIELD("uint", sum_place),        SL_FIELD("uint", level),
+                               SL_FIELD("uint", resolution),       SL_FIELD("uint", item_count)};
+#undef SL_OF
+  for (Field& field : fields) field.name = prefix + field.name;
+  return fields;
+}
 
 /// The structs of all three languages.
 std::vector<Layout> sharedLayouts() {
@@ -94,11 +116,6 @@ std::vector<Layout> sharedLayouts() {
                  {SL_FIELD("vec4", target), SL_FIELD("vec4", a), SL_FIELD("vec4", b), SL_FIELD("vec4", c),
                   SL_FIELD("uvec4", number)}});
 #undef SL_OF
-  return all;
-}
-
-/// What an OpenCL program with packets of so many rays reads besides: tree and triangles.
-std::vector<Layout> sceneLayouts(uint32_t packet) {
 #define SL_OF BvhNode2
   Layout node{"BvhNode2", sizeof(BvhNode2), {SL_FIELD("vec4", x), SL_FIELD("vec4", y), SL_FIELD("vec4", z)}};
 #undef SL_OF
@@ -108,43 +125,38 @@ std::vector<Layout> sceneLayouts(uint32_t packet) {
   for (size_t i = 0; i < 2; ++i) {
     node.fields.push_back({fmt::format("count[{}]", i), "uint", offsetof(BvhNode2, count) + 4 * i});
   }
-  Layout record{"TriangleRecord", packet > 1 ? sizeof(TriangleRecord) : sizeof(TriangleRecordGpu), {}};
-  for (size_t i = 0; i < 9 && packet > 1; ++i) {
+  all.push_back(node);
+  Layout record{"TriangleRecord", sizeof(TriangleRecord), {}};
+  for (size_t i = 0; i < 9; ++i) {
     record.fields.push_back(
         {fmt::format("vertices[{}]", i), "float", offsetof(TriangleRecord, vertices) + 4 * i});
   }
-  if (packet > 1) record.fields.push_back({"id", "uint", offsetof(TriangleRecord, id)});
-  for (size_t i = 0; i < 3 && packet == 1; ++i) {
-    record.fields.push_back({fmt::format("v{}", i), "vec4", offsetof(TriangleRecordGpu, vertices) + 16 * i});
-  }
-  return {node, record};
+  record.fields.push_back({"id", "uint", offsetof(TriangleRecord, id)});
+  all.push_back(record);
+#define SL_OF TriangleRecordGpu
+  all.push_back({"TriangleRecordGpu",
+                 sizeof(TriangleRecordGpu),
+                 {SL_FIELD("vec4", v0), SL_FIELD("vec4", v1), SL_FIELD("vec4", v2)}});
+#undef SL_OF
+  all.push_back({"StageLaunch", sizeof(StageLaunch), launchFields("")});
+  return all;
 }
 
 /// What the host tells every Vulkan shader.
-Layout launchLayout() {
+Layout vulkanLayout() {
+  Layout launch{"VulkanLaunch", sizeof(VulkanLaunch), launchFields("numbers.")};
+#define SL_BUFFER_FIELD(type, name) \
+  launch.fields.push_back(          \
+      {#name, "Buffer_" #type, offsetof(VulkanLaunch, addresses) + 8 * uint32_t(StageBuffer::name)});
+  SL_STAGE_BUFFERS(SL_BUFFER_FIELD)
+#undef SL_BUFFER_FIELD
 #define SL_OF VulkanLaunch
-  Layout launch{
-      "VulkanLaunch",
-      sizeof(VulkanLaunch),
-      {SL_FIELD("uvec4", params.counts), SL_FIELD("uvec4", params.shifts), SL_FIELD("vec4", params.distances),
-       SL_FIELD("uvec4", params.method), SL_FIELD("vec4", params.spacing), SL_FIELD("vec4", params.look),
-       SL_FIELD("uvec4", segment.range), SL_FIELD("uvec4", segment.batch), SL_FIELD("uvec4", segment.digits),
-       SL_FIELD("uvec4", segment.coefficients), SL_FIELD("uvec4", shifts)}};
 #define SL_ADDRESS(field) launch.fields.push_back(SL_FIELD("uint64", field))
-  SL_ADDRESS(tlas), SL_ADDRESS(part_starts), SL_ADDRESS(leaf_ids), SL_ADDRESS(leaf_of), SL_ADDRESS(corners);
-  SL_ADDRESS(faces), SL_ADDRESS(keys), SL_ADDRESS(winner), SL_ADDRESS(fresh), SL_ADDRESS(counters);
-  SL_ADDRESS(entries), SL_ADDRESS(segments), SL_ADDRESS(border_starts), SL_ADDRESS(border_edges);
-  SL_ADDRESS(reverse_items), SL_ADDRESS(border_hits), SL_ADDRESS(bits), SL_ADDRESS(kept_bits);
-  SL_ADDRESS(discontinuities), SL_ADDRESS(rays), SL_ADDRESS(hits), SL_ADDRESS(words);
-  SL_ADDRESS(block_counts), SL_ADDRESS(indices), SL_ADDRESS(old_keys), SL_ADDRESS(old_winner);
-  SL_ADDRESS(items_before), SL_ADDRESS(hemicube), SL_ADDRESS(hemicubes), SL_ADDRESS(chunk_bounds);
-  SL_ADDRESS(draws), SL_ADDRESS(raster_leaves);
+  SL_ADDRESS(tlas), SL_ADDRESS(part_starts), SL_ADDRESS(leaf_ids), SL_ADDRESS(corners), SL_ADDRESS(hemicube);
+  SL_ADDRESS(hemicubes), SL_ADDRESS(chunk_bounds), SL_ADDRESS(draws), SL_ADDRESS(raster_leaves);
 #undef SL_ADDRESS
 #define SL_WORD(field) launch.fields.push_back(SL_FIELD("uint", field))
-  SL_WORD(capacity), SL_WORD(old_capacity), SL_WORD(border_first), SL_WORD(border_count), SL_WORD(waiting);
-  SL_WORD(reverse_first), SL_WORD(stage), SL_WORD(segment_count), SL_WORD(list_end), SL_WORD(word_count);
-  SL_WORD(block_count), SL_WORD(sum_place), SL_WORD(resolution), SL_WORD(level), SL_WORD(raster_resolution);
-  SL_WORD(raster_first), SL_WORD(chunk_count), SL_WORD(triangle_count);
+  SL_WORD(raster_resolution), SL_WORD(raster_first), SL_WORD(chunk_count), SL_WORD(triangle_count);
   launch.fields.push_back(SL_FIELD("float", raster_near));
   SL_WORD(unused);
 #undef SL_WORD
@@ -166,8 +178,10 @@ std::string assignments(const Layout& layout, bool opencl) {
     for (uint32_t w = 0; w < field.words(); ++w) {
       values += fmt::format("{}{}u + {}u * i", w > 0 ? ", " : "", kFirstValue + word++, kNextElement);
     }
-    if (field.type == "uint64") {
-      values = fmt::format("packUint2x32(uvec2({}))", values);
+    if (field.words() == 2) {
+      values = opencl ? fmt::format("as_ulong((uint2)({}))", values)
+                      : fmt::format("{}(packUint2x32(uvec2({})))",
+                                    field.isAddress() ? field.type : "uint64_t", values);
     } else if (field.type.ends_with("vec4")) {
       values = fmt::format("{}({})", opencl ? "(uint4)" : "uvec4", values);
     }
@@ -196,15 +210,13 @@ void expectWritten(const std::vector<uint32_t>& words, const Layout& layout) {
 
 /// Headers that the structs come from.
 const char* const kIncludes =
-    "#include \"core/shared/border.h\"\n#include \"core/shared/reverse.h\"\n"
-    "#include \"core/shared/view_ray.h\"\n";
+    "#include \"core/shared/border.h\"\n#include \"core/shared/bvh_node.h\"\n#include "
+    "\"core/shared/reverse.h\"\n"
+    "#include \"core/shared/stage_launch.h\"\n#include \"core/shared/view_ray.h\"\n";
 
-class OpenClLayout : public testing::TestWithParam<uint32_t> {};
-
-TEST_P(OpenClLayout, KernelsWriteFieldsWhereCppHasThem) {
-  std::vector<Layout> layouts = sharedLayouts();
-  for (const Layout& layout : sceneLayouts(GetParam())) layouts.push_back(layout);
-  std::string source = std::string(kIncludes) + "#include \"cl_kernels/scene.cl\"\n";
+TEST(OpenClLayout, KernelsWriteFieldsWhereCppHasThem) {
+  const std::vector<Layout> layouts = sharedLayouts();
+  std::string source = kIncludes;
   for (const Layout& layout : layouts) {
     source += fmt::format(
         "__kernel void write{0}(__global {0}* out) {{\n  uint i = (uint)get_global_id(0);\n  {0} s;\n{1}"
@@ -219,9 +231,7 @@ TEST_P(OpenClLayout, KernelsWriteFieldsWhereCppHasThem) {
   cl::CommandQueue queue(context, devices.front());
   cl::Program program(context, source);
   std::filesystem::current_path(SL_SOURCE_DIR);  // build options cannot quote a folder whose name has blanks
-  ASSERT_EQ(
-      program.build(devices.front(), fmt::format("-cl-std=CL1.2 -I. -DSL_PACKET={}", GetParam()).c_str()),
-      CL_SUCCESS)
+  ASSERT_EQ(program.build(devices.front(), "-cl-std=CL1.2 -I."), CL_SUCCESS)
       << program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(devices.front());
   for (const Layout& layout : layouts) {
     std::vector<uint32_t> words(kElements * layout.bytes / 4);
@@ -233,8 +243,6 @@ TEST_P(OpenClLayout, KernelsWriteFieldsWhereCppHasThem) {
     expectWritten(words, layout);
   }
 }
-
-INSTANTIATE_TEST_SUITE_P(Packets, OpenClLayout, testing::Values(1u, 8u));
 
 /// Runs a shader over lists (vk_shaders/list.glsl) that writes to launch.rays.
 std::vector<uint32_t> runShader(const VulkanContext& context, const std::vector<uint32_t>& code,
@@ -260,7 +268,7 @@ std::vector<uint32_t> runShader(const VulkanContext& context, const std::vector<
   const VulkanBuffer output = context.buffer(bytes, "structs");
   const VulkanBuffer staging = context.buffer(bytes, "structs", VulkanMemory::kReadback);
   VulkanRunner runner(context);
-  runner.launch.rays = output.address();
+  runner.bind(StageBuffer::rays, output);
   const VulkanPush push{runner.recordLaunch(), 0, kElements};
   const VkCommandBuffer commands = runner.commands.next();
   api.vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline.get());
@@ -278,7 +286,7 @@ TEST(VulkanLayout, ShadersWriteFieldsWhereCppHasThem) {
   const VulkanContext context("vulkan", tracingNeeds(false));
   const TemporaryFolder folder;
   std::vector<Layout> layouts = sharedLayouts();
-  layouts.push_back(launchLayout());
+  layouts.push_back(vulkanLayout());
   for (const Layout& layout : layouts) {
     const std::string shader = folder / (layout.name + ".comp"), spirv = folder / (layout.name + ".spv");
     std::ofstream(shader) << "#version 460\n#extension GL_GOOGLE_include_directive : require\n"
@@ -286,7 +294,8 @@ TEST(VulkanLayout, ShadersWriteFieldsWhereCppHasThem) {
                           << kIncludes
                           << "layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Out {\n  "
                           << layout.name << " at[];\n};\nvoid runItem(uint i) {\n  " << layout.name << " s;\n"
-                          << assignments(layout, false) << "  Out(SL_LAUNCH.rays).at[i] = s;\n}\n";
+                          << assignments(layout, false)
+                          << "  Out(uint64_t(SL_THE_LAUNCH.rays)).at[i] = s;\n}\n";
     const std::string command =
         fmt::format("glslangValidator --quiet -V --target-env vulkan1.2 -S comp -I\"{}\" -o \"{}\" \"{}\"",
                     SL_SOURCE_DIR, spirv, shader);

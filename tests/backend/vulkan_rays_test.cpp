@@ -35,34 +35,36 @@ class VulkanRays : public testing::Test {
     context_ = std::make_unique<VulkanContext>("vulkan", tracingNeeds(false));
     runner_ = std::make_unique<VulkanRunner>(*context_);
     on_device_ = uploadVulkanScene(*context_, scene_, bvh_, 0);
-    on_device_.describe(runner_->launch);
+    on_device_.describe(*runner_);
     params_.counts = uvec4(7, 5, 11, faces_.size());
     params_.shifts = uvec4(0x9e3779b9u, 12345678u, 99u, 1000007u);
     params_.distances = vec4(1e-4f, 1e-5f, 1e-3f, 1e-4f);
     params_.method.y = 1;
     params_.spacing.x = 0.01f;
-    runner_->launch.params = params_;
-    runner_->launch.shifts = params_.shifts;
-    runner_->launch.faces = put(faces_);
+    launch().params = params_;
+    launch().shifts = params_.shifts;
+    put(StageBuffer::faces, faces_);
   }
 
-  /// Uploads; returns the address.
+  StageLaunch& launch() { return runner_->launch.numbers; }
+
+  /// Uploads and binds.
   template <typename T>
-  uint64_t put(const std::vector<T>& values) {
+  void put(StageBuffer name, const std::vector<T>& values) {
     buffers_.push_back(context_->buffer(values.size() * sizeof(T), "test data"));
     VulkanUpload upload(*context_);
     upload.write(buffers_.back(), values.data(), values.size() * sizeof(T));
     upload.finish();
-    return buffers_.back().address();
+    runner_->bind(name, buffers_.back());
   }
 
   /// What `count` work items of a list shader write, `bytes` bytes each.
-  void prepare(const char* shader, uint64& address, uint32_t count, uint64_t bytes) {
+  void prepare(const char* shader, StageBuffer output, uint32_t count, uint64_t bytes) {
     buffers_.push_back(context_->buffer(count * bytes, shader));
-    address = buffers_.back().address();
+    runner_->bind(output, buffers_.back());
     const VulkanStage stage = VulkanStage::list(*context_, shader);
     runner_->run(stage, count);
-    runner_->takeCounts();
+    runner_->takeCounters();
   }
 
   /// The rays of a stage as the shaders make them.
@@ -71,11 +73,11 @@ class VulkanRays : public testing::Test {
     const VulkanBuffer rays = context_->buffer(bytes, "rays");
     const VulkanBuffer staging = context_->buffer(bytes, "rays", VulkanMemory::kReadback);
     const VulkanStage stage_rays = VulkanStage::list(*context_, "stage_rays");
-    runner_->launch.stage = stage;
-    runner_->launch.rays = rays.address();
+    launch().stage = stage;
+    runner_->bind(StageBuffer::rays, rays);
     runner_->run(stage_rays, count);
     runner_->commands.copy(rays, staging, bytes);
-    runner_->takeCounts();
+    runner_->takeCounters();
     std::vector<Ray> result(count);
     std::memcpy(result.data(), staging.mapped(), bytes);
     return result;
@@ -99,7 +101,7 @@ TEST_F(VulkanRays, Random) {
   uint64_t rays = 0;
   for (uint32_t f = 0; f < faces_.size(); ++f) {
     const RandomSegment segment = makeRandomSegment(f, 5'000'000'000 + 7919 * f, 100'003, 1);
-    runner_->launch.segment = segment;
+    launch().segment = segment;
     const auto slots = static_cast<uint32_t>(slotCount(segment));
     const std::vector<Ray> made = make(kStageRandom, slots);
     for (uint32_t slot = 0; slot < slots; ++slot) {
@@ -121,7 +123,7 @@ TEST_F(VulkanRays, BorderAndReverse) {
 /// The same of the original method: all places of the polygons, and rays past occluders.
 TEST_F(VulkanRays, BorderAndReverseOfGvs) {
   params_.method.x = kSampleGvs;
-  runner_->launch.params = params_;
+  launch().params = params_;
   compareBorderAndReverse();
 }
 
@@ -144,10 +146,10 @@ void VulkanRays::compareBorderAndReverse() {
   if (!isGvs(params_)) {
     ASSERT_LT(total, entries.size() * borderRayCount(params_.counts.x, params_));  // the spacing thins some
   }
-  runner_->launch.entries = put(entries);
-  runner_->launch.border_starts = put(std::vector<uint32_t>(starts.begin(), starts.end()));
-  runner_->launch.border_count = uint32_t(entries.size());
-  prepare("border_edges", runner_->launch.border_edges, uint32_t(entries.size()) * 3, sizeof(BorderEdge));
+  put(StageBuffer::entries, entries);
+  put(StageBuffer::border_starts, std::vector<uint32_t>(starts.begin(), starts.end()));
+  launch().border_count = uint32_t(entries.size());
+  prepare("border_edges", StageBuffer::border_edges, uint32_t(entries.size()) * 3, sizeof(BorderEdge));
   const std::vector<Ray> made = make(kStageBorder, total);
   const BorderRays polygons(scene_, entries, starts, params_);
   std::vector<Ray> border(total);
@@ -161,28 +163,22 @@ void VulkanRays::compareBorderAndReverse() {
   }
 
   // Reverse rays of every 29th border ray, as if it had met a discontinuity, with the occluder that it hit.
-  const LeafParts leaves = splitIntoParts(bvh_, uint32_t(scene_.triangles.size()), 0xffffffffu);
-  std::vector<uint32_t> leaf_of(leaves.ids.size());
-  for (uint32_t leaf = 0; leaf < leaves.ids.size(); ++leaf) leaf_of[leaves.ids[leaf]] = leaf;
-  std::vector<Discontinuity> waiting, on_device;
+  std::vector<Discontinuity> waiting;
   for (uint32_t i = 0; i < total; i += 29) {
     place[i].z = tracer.trace(border[i]).triangle;
     waiting.push_back({place[i]});
-    if (place[i].z != kNoTriangle) place[i].z = leaf_of[place[i].z];
-    on_device.push_back({place[i]});
   }
-  runner_->launch.discontinuities = put(on_device);
-  runner_->launch.items_before = 0xfffffff0ull;  // running numbers past 32 bits
+  put(StageBuffer::discontinuities, waiting);
+  launch().items_before = 0xfffffff0ull;  // running numbers past 32 bits
   const uint32_t per_item = reverseRayCount(params_);
   const auto reverse_total = static_cast<uint32_t>(waiting.size() * per_item);
-  prepare("reverse_items", runner_->launch.reverse_items, uint32_t(waiting.size()), sizeof(ReverseItem));
+  prepare("reverse_items", StageBuffer::reverse_items, uint32_t(waiting.size()), sizeof(ReverseItem));
   const std::vector<Ray> reverse = make(kStageReverse, reverse_total);
   uint32_t excluded = 0;
   for (uint32_t i = 0; i < reverse_total; ++i) {
     const uint32_t w = i / per_item;
-    const uint64_t number = runner_->launch.items_before + w;
-    const ReverseItem item = reverseItemOf(scene_, faces_, entries, waiting[w], number, params_);
-    const Ray expected = reverseRayOf(item, faces_, i % per_item, params_);
+    const HostStage stage{&scene_, faces_, &params_, entries, waiting, launch().items_before};
+    const Ray expected = reverseRayOf(stage, reverseItemAt(stage, w), i % per_item);
     ASSERT_PRED_FORMAT2(sameRay, reverse[i], expected) << "reverse ray " << i;
     excluded += !hasDirection(expected);
   }

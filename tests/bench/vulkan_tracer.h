@@ -19,8 +19,8 @@ class VulkanTracer {
         scene_(uploadVulkanScene(context_, scene, bvh, 0)),
         slots_stage_(tracingStage(context_, "trace_slots", 64)),
         rays_stage_(tracingStage(context_, "trace_rays", 64)) {
-    scene_.describe(runner_.launch);
-    runner_.launch.shifts = shifts;
+    scene_.describe(runner_);
+    runner_.launch.numbers.shifts = shifts;
   }
 
   /// Random rays that traceSegments generates and traces.
@@ -45,17 +45,17 @@ class VulkanTracer {
 
   void traceSegments() {
     for (const Segment& segment : segments_) {
-      runner_.launch.segment = segment.segment;
-      runner_.launch.faces = segment.face.address();
-      runner_.launch.hits = segment.hits.address();
+      runner_.launch.numbers.segment = segment.segment;
+      runner_.bind(StageBuffer::faces, segment.face);
+      runner_.bind(StageBuffer::hits, segment.hits);
       runner_.run(slots_stage_, static_cast<uint32_t>(slotCount(segment.segment)));
     }
     runner_.commands.finish();
   }
 
   void traceRays() {
-    runner_.launch.rays = rays_.address();
-    runner_.launch.hits = ray_hits_.address();
+    runner_.bind(StageBuffer::rays, rays_);
+    runner_.bind(StageBuffer::hits, ray_hits_);
     runner_.run(rays_stage_, ray_count_);
     runner_.commands.finish();
   }

@@ -8,7 +8,6 @@
 
 #include <atomic>
 #include <bit>
-#include <numeric>
 #include <utility>
 
 #include "core/base/error.h"
@@ -41,8 +40,8 @@ class CpuDevice final : public Device {
 
   /// Generator of the reverse rays of the last traceReverse; excluded ones have no direction.
   auto reverseRays() const {
-    return ReverseRays(scene_, faces_, entries_, std::span(discontinuities_).subspan(reverse_first_),
-                       items_before_ + reverse_first_, params_);
+    return ReverseRays({&scene_, faces_, &params_, entries_,
+                        std::span(discontinuities_).subspan(reverse_first_), items_before_ + reverse_first_});
   }
 
  public:
@@ -268,20 +267,8 @@ class CpuDevice final : public Device {
   Ray rayOfBatch(uint32_t stage, uint32_t index) const {
     if (stage == kStageBorder) return borderRays()(index - 1).ray;
     if (stage == kStageReverse) return reverseRays()(index - 1).ray;
-    for (const RandomSegment& segment : segments_) {
-      const uint32_t offset = index - segment.batch.x;
-      if (offset < segment.range.w) {
-        return randomRay(segmentFirst(segment), offset, faces_[segment.range.x], params_.shifts);
-      }
-    }
-    throw Error("internal error: a winner's ray is in no segment of its batch");
-  }
-
-  static PvsEntry entryOf(uint32_t triangle, const Ray& ray, uint32_t stage) {
-    return {uvec4(floatBitsToUint(ray.origin.x), floatBitsToUint(ray.origin.y), floatBitsToUint(ray.origin.z),
-                  triangle),
-            uvec4(floatBitsToUint(ray.direction.x), floatBitsToUint(ray.direction.y),
-                  floatBitsToUint(ray.direction.z), stage)};
+    return segmentRayAt(HostStage{.face_list = faces_, .stage_params = &params_, .segment_list = segments_},
+                        index);
   }
 
   const Scene& scene_;

@@ -23,8 +23,8 @@ class NaiveDevice final : public Device {
   }
 
   auto reverseRays(uint32_t first) const {
-    return ReverseRays(scene_, faces_, entries_, std::span(discontinuities_).subspan(first),
-                       items_before_ + first, params_);
+    return ReverseRays({&scene_, faces_, &params_, entries_, std::span(discontinuities_).subspan(first),
+                        items_before_ + first});
   }
 
  public:
@@ -155,18 +155,11 @@ class NaiveDevice final : public Device {
     if (triangle == kNoTriangle) return;
     const auto [slot, is_new] = set_.try_emplace(triangle, Found{ray.index, entries_.size()});
     if (is_new) {
-      entries_.push_back(entryOf(triangle, ray.ray));
+      entries_.push_back(entryOf(triangle, ray.ray, 0));
     } else if (ray.index < slot->second.index) {
       slot->second.index = ray.index;
-      entries_[slot->second.place] = entryOf(triangle, ray.ray);
+      entries_[slot->second.place] = entryOf(triangle, ray.ray, 0);
     }
-  }
-
-  static PvsEntry entryOf(uint32_t triangle, const Ray& ray) {
-    const auto bits = [](const vec4& v, uint32_t w) {
-      return uvec4(floatBitsToUint(v.x), floatBitsToUint(v.y), floatBitsToUint(v.z), w);
-    };
-    return {bits(ray.origin, triangle), bits(ray.direction, 0)};
   }
 
   /// Traces the rays 0 .. count - 1 of generators that makeGenerator() returns, and hands those that have a

@@ -1,7 +1,6 @@
 #include "core/device/opencl/opencl_scene.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "cl_kernels/program_source.h"
 #include "core/shared/box.h"
@@ -18,7 +17,7 @@ void addToId(TriangleRecord& record, uint32_t offset) {
 }
 
 void addToId(TriangleRecordGpu& record, uint32_t offset) {
-  record.vertices[0][3] = std::bit_cast<float>(std::bit_cast<uint32_t>(record.vertices[0][3]) + offset);
+  record.v0.w = uintBitsToFloat(floatBitsToUint(record.v0.w) + offset);
 }
 
 template <typename Record>

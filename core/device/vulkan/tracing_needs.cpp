@@ -25,6 +25,10 @@ bool usesPipelines(const VulkanContext& context) {
   return context.has(VulkanFeature::kPipelines);
 }
 
+const char* layoutText(bool pipelines) {
+  return pipelines ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
+}
+
 VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size) {
   if (!usesPipelines(context)) return VulkanStage::compute(context, name + ".comp", group_size);
   return VulkanStage::rays(context, name + ".rgen", "nothing.rmiss", "nearest.rchit");

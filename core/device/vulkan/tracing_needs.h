@@ -15,6 +15,9 @@ bool usesPipelines(const VulkanContext& context);
 /// A tracing stage (trace_random, ...) of the context's kind. group_size: of ray queries.
 VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size);
 
+/// DeviceInfo::layout of a device that traces by pipelines, or by ray queries.
+const char* layoutText(bool pipelines);
+
 /// Why a context cannot draw hemicubes, in one line; empty: it can.
 std::string whyNoHemicubes(const VulkanContext& context);
 

@@ -93,7 +93,7 @@ void VulkanRaster::boundChunks(uint32_t triangles) {
   VulkanLaunch& launch = runner_.launch;
   launch.triangle_count = triangles;
   launch.chunk_count = (triangles + kChunkTriangles - 1) / kChunkTriangles;
-  bounds_ = context_.buffer(uint64_t(launch.chunk_count) * 24, "boxes of chunks");
+  bounds_ = context_.buffer(uint64_t(launch.chunk_count) * kBoxFloats * 4, "boxes of chunks");
   draws_ =
       context_.buffer(uint64_t(launch.chunk_count) * kHemicubeViews * sizeof(VkDrawIndirectCommand), "draws");
   launch.chunk_bounds = bounds_.address();

@@ -9,8 +9,6 @@
 namespace sightline {
 namespace {
 
-constexpr uint64_t kCornerBytes = 36;
-
 void packCorners(const Scene& scene, const uint32_t* ids, float* corners, size_t count) {
   tbb::parallel_for(size_t{0}, count, [&](size_t i) {
     const glm::uvec3 triangle = scene.triangles[ids[i]];
@@ -24,11 +22,12 @@ void packCorners(const Scene& scene, const uint32_t* ids, float* corners, size_t
 
 }  // namespace
 
-void VulkanScene::describe(VulkanLaunch& launch) const {
+void VulkanScene::describe(VulkanRunner& runner) const {
+  VulkanLaunch& launch = runner.launch;
   launch.tlas = tree.top.address;
   launch.part_starts = part_starts.address();
   launch.leaf_ids = leaf_ids.address();
-  launch.leaf_of = leaf_of.address();
+  runner.bind(StageBuffer::place_of, leaf_of);
   launch.corners = corners.address();
 }
 
@@ -42,8 +41,8 @@ VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, 
 
   VulkanScene result;
   VulkanUpload upload(context);
-  result.corners = context.buffer(count * kCornerBytes, "triangles of the scene");
-  upload.write(result.corners, count * kCornerBytes, kCornerBytes,
+  result.corners = context.buffer(uint64_t(count) * kCornerBytes, "triangles of the scene");
+  upload.write(result.corners, uint64_t(count) * kCornerBytes, kCornerBytes,
                [&](void* piece, uint64_t first, uint64_t bytes) {
                  packCorners(scene, &leaves.ids[first / kCornerBytes], static_cast<float*>(piece),
                              bytes / kCornerBytes);

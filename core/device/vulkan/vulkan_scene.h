@@ -1,7 +1,7 @@
 #pragma once
+#include "core/device/vulkan/vulkan_runner.h"
 #include "core/scene/scene.h"
 #include "core/vulkan/vulkan_tree.h"
-#include "vk_shaders/launch.h"
 
 namespace sightline {
 
@@ -11,8 +11,8 @@ struct VulkanScene {
   VulkanBuffer corners, leaf_ids, leaf_of, part_starts;
   VulkanTree tree;
 
-  /// Puts the addresses into a launch.
-  void describe(VulkanLaunch& launch) const;
+  /// Puts the addresses into the runner's launch.
+  void describe(VulkanRunner& runner) const;
 };
 
 /// Uploads in pieces, so that the host needs little memory besides scene and tree, and builds the trees.

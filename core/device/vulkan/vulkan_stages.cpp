@@ -1,0 +1,80 @@
+#include "core/device/vulkan/vulkan_stages.h"
+
+#include <algorithm>
+
+#include "core/base/parallel_copy.h"
+#include "core/device/vulkan/tracing_needs.h"
+
+namespace sightline {
+namespace {
+
+/// Read back at once. The buffer is kept, as those of uploads are: the H200's driver takes 4 ms to make 16
+/// MiB.
+constexpr uint64_t kReadbackBytes = 64u << 20;
+/// Written by one command, and as many bytes as so many commands take: beyond, an upload is faster.
+constexpr uint64_t kUpdateBytes = 65536, kMostUpdateBytes = 8 * kUpdateBytes;
+/// Work items of a group with ray queries, if the options name no other.
+constexpr uint32_t kGroup = 64;
+
+}  // namespace
+
+VulkanStages::VulkanStages(const std::string& selector, const Scene& scene, const Bvh& bvh,
+                           const DeviceOptions& options)
+    : context_(selector, tracingNeeds(options.ray_queries), options.memory_budget_bytes),
+      runner_(context_),
+      group_(options.work_group_size > 0 ? options.work_group_size : kGroup),
+      scene_(uploadVulkanScene(context_, scene, bvh, options.part_triangles)) {
+  scene_.describe(runner_);
+  for (uint32_t i = 0; i < kGpuStages; ++i) {
+    if (!tracesRays(GpuStage(i))) stages_[i] = VulkanStage::list(context_, shaderName(GpuStage(i)));
+  }
+}
+
+DeviceInfo VulkanStages::info() const {
+  DeviceInfo info = context_.info();
+  info.layout = layoutText(usesPipelines(context_));
+  info.driver_tree_parts = static_cast<uint32_t>(scene_.tree.parts.size());
+  info.driver_tree_bytes = scene_.tree.bytes;
+  info.driver_tree_build_seconds = scene_.tree.build_seconds;
+  return info;
+}
+
+void VulkanStages::release(VulkanBuffer& buffer) {
+  if (buffer.get() == VK_NULL_HANDLE) return;
+  runner_.commands.finish();
+  buffer = VulkanBuffer();
+}
+
+void VulkanStages::write(const VulkanBuffer& buffer, const void* data, uint64_t bytes) {
+  if (bytes > kMostUpdateBytes) {
+    runner_.commands.finish();
+    if (!upload_) upload_.emplace(context_);
+    upload_->write(buffer, data, bytes);
+    return upload_->finish();
+  }
+  for (uint64_t first = 0; first < bytes; first += kUpdateBytes) {
+    runner_.commands.update(buffer, static_cast<const char*>(data) + first,
+                            std::min(kUpdateBytes, bytes - first), first);
+  }
+}
+
+void VulkanStages::read(const VulkanBuffer& buffer, void* target, uint64_t bytes) {
+  if (readback_.bytes() < std::min(bytes, kReadbackBytes)) {
+    readback_ = VulkanBuffer();
+    readback_ = context_.buffer(std::min(bytes, kReadbackBytes), "staging memory", VulkanMemory::kReadback);
+  }
+  for (uint64_t first = 0; first < bytes; first += kReadbackBytes) {
+    const uint64_t count = std::min(bytes - first, kReadbackBytes);
+    runner_.commands.copy(buffer, readback_, count, first);
+    runner_.commands.finish();
+    parallelCopy(static_cast<char*>(target) + first, readback_.mapped(), count);
+  }
+}
+
+void VulkanStages::run(GpuStage stage, uint64_t count) {
+  std::optional<VulkanStage>& made = stages_[uint32_t(stage)];
+  if (!made) made = tracingStage(context_, shaderName(stage), group_);
+  runner_.run(*made, static_cast<uint32_t>(count));
+}
+
+}  // namespace sightline
