@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/io/byte_stream.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 
 namespace sightline {
 

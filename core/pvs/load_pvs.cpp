@@ -1,5 +1,3 @@
-#include "core/pvs/pvs.h"
-
 #include <fmt/core.h>
 #include <xxhash.h>
 
@@ -7,6 +5,7 @@
 #include <map>
 
 #include "core/io/file_io.h"
+#include "core/pvs/pvs_file.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
 
