@@ -140,11 +140,14 @@ void Bake::goOnAfterPart(bool overwrite) {
     if (!overwrite) throw;  // else it goes; what cannot even be read stays
     return;
   }
-  const std::string why = left.whole_bytes == 0 ? "" : whyOther(left.pvs, head_, part_);
+  if (left.pvs.cells.empty()) {  // nothing that would be lost, whatever its inputs
+    part_problem_ = left.problem;
+    return;
+  }
+  const std::string why = whyOther(left.pvs, head_, part_);
   if (!why.empty() && !overwrite) throw Error(why);
   if (!why.empty()) return;
   part_problem_ = left.problem;
-  if (left.whole_bytes == 0) return;
   writer_->goOn(left);
   begun_ = true;
   finished_ = summarize(left.pvs);

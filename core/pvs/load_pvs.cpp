@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "core/io/file_io.h"
 #include "core/pvs/pvs_file.h"
@@ -207,7 +208,13 @@ PartialPvs loadPartialPvs(const std::filesystem::path& part) {
 }
 
 PvsFile loadFinishedCells(const std::filesystem::path& file) {
-  return file.extension() == ".part" ? loadPartialPvs(file).pvs : loadPvs(file);
+  if (file.extension() != ".part") return loadPvs(file);
+  PartialPvs left = loadPartialPvs(file);
+  if (left.whole_bytes == 0) {
+    throw BadPvs(fmt::format("{}: holds no bake yet: {}", file.string(),
+                             left.problem.empty() ? "the file is empty" : left.problem));
+  }
+  return std::move(left.pvs);
 }
 
 }  // namespace sightline

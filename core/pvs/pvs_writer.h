@@ -26,7 +26,8 @@ struct PartialPvs {
 /// it cannot be read.
 PartialPvs loadPartialPvs(const std::filesystem::path& part);
 
-/// loadPvs, or for a name that ends in ".part" the finished cells of a bake in work. Throws Error.
+/// loadPvs, or for a name that ends in ".part" the finished cells of a bake in work. Throws BadPvs, too where
+/// not even its head is there, or Error.
 PvsFile loadFinishedCells(const std::filesystem::path& file);
 
 /// Writes a .pvs file cell by cell. Cells are appended to a part file, each with what it took and flushed
