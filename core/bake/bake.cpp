@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
 #include "core/io/file_io.h"
+#include "core/pvs/param_table.h"
 #include "core/scene/cell_problem.h"
 
 namespace sightline {
@@ -68,30 +69,11 @@ std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile&
                                       wanted.triangle_count));
   }
   compareCells(differences, earlier.planned, wanted.planned);
-  const BakeParams &a = earlier.params, &b = wanted.params;
-  compare(differences, "method", methodName(a.method), methodName(b.method));
-  compare(differences, "n_rand", a.n_rand, b.n_rand);
-  compare(differences, "n_abs_edge", a.n_abs_edge, b.n_abs_edge);
-  compare(differences, "n_rs_edge", a.n_rs_edge, b.n_rs_edge);
-  compare(differences, "n_rs_area", a.n_rs_area, b.n_rs_area);
-  compare(differences, "delta_abs_relative", a.delta_abs_relative, b.delta_abs_relative);
-  compare(differences, "delta_abs", a.delta_abs, b.delta_abs);
-  compare(differences, "delta_rs_relative", a.delta_rs_relative, b.delta_rs_relative);
-  compare(differences, "delta_rs", a.delta_rs, b.delta_rs);
-  compare(differences, "threshold", a.threshold, b.threshold);
-  compare(differences, "quiet_iterations", a.quiet_iterations, b.quiet_iterations);
-  compare(differences, "max_rays", a.max_rays, b.max_rays);
-  compare(differences, "max_seconds", a.max_seconds, b.max_seconds);
-  compare(differences, "batch_rays", a.batch_rays, b.batch_rays);
-  compare(differences, "validation_rays", a.validation_rays, b.validation_rays);
-  compare(differences, "seed", a.seed, b.seed);
-  compare(differences, "raster_resolution", a.raster_resolution, b.raster_resolution);
-  compare(differences, "target_error", a.target_error, b.target_error);
-  compare(differences, "abs_spacing", a.abs_spacing, b.abs_spacing);
-  compare(differences, "reverse_stride", a.reverse_stride, b.reverse_stride);
-  compare(differences, "order", orderName(a.order), orderName(b.order));
+  for (const Param& param : kParams) {
+    if (sameValue(param, earlier.params, wanted.params)) continue;
+    compare(differences, param.name, valueText(param, earlier.params), valueText(param, wanted.params));
+  }
   compare(differences, "witnesses", earlier.has_witnesses, wanted.has_witnesses);
-  if (differences.empty() && a != b) differences.push_back("parameters");  // one that this list lacks
   return differences;
 }
 
@@ -140,11 +122,14 @@ void Bake::goOnAfterPart(bool overwrite) {
     if (!overwrite) throw;  // else it goes; what cannot even be read stays
     return;
   }
-  const std::string why = left.whole_bytes == 0 ? "" : whyOther(left.pvs, head_, part_);
+  if (left.pvs.cells.empty()) {  // nothing that would be lost, whatever its inputs
+    part_problem_ = left.problem;
+    return;
+  }
+  const std::string why = whyOther(left.pvs, head_, part_);
   if (!why.empty() && !overwrite) throw Error(why);
   if (!why.empty()) return;
   part_problem_ = left.problem;
-  if (left.whole_bytes == 0) return;
   writer_->goOn(left);
   begun_ = true;
   finished_ = summarize(left.pvs);

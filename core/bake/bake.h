@@ -36,7 +36,7 @@ std::filesystem::path partFileOf(std::filesystem::path file);
 class Bake {
  public:
   /// Looks at what is there: FILE complete, FILE.part to go on from, or nothing; locks the part file.
-  /// wanted.cells is ignored. Throws Error if FILE or FILE.part holds a bake with other inputs or is damaged,
+  /// wanted.cells is ignored. Throws Error if FILE or FILE.part holds cells of other inputs or is damaged,
   /// unless `overwrite` (which replaces them, but goes on after a part file with the same inputs), or if it
   /// cannot be read, or if nothing can be written there.
   Bake(PvsFile wanted, std::filesystem::path file, bool overwrite = false);

@@ -9,6 +9,7 @@
 #include "core/base/text.h"
 #include "core/io/csv.h"
 #include "core/page/curve_range.h"
+#include "core/pvs/param_table.h"
 #include "core/pvs/stage_name.h"
 
 namespace sightline {
@@ -238,36 +239,14 @@ void addStages(HtmlReport& html, const BakeReport& report, const std::vector<Cur
 
 }  // namespace
 
-std::vector<ReportFact> parameterFacts(const BakeParams& p) {
-  const auto limit = [](auto value) { return value == 0 ? std::string("none") : fmt::format("{}", value); };
-  const bool drawn = p.method == Method::kRaster;
-  std::vector<ReportFact> facts = {
-      {"method", methodName(p.method)},
-      {drawn ? "samples an iteration" : "random rays an iteration", std::to_string(p.n_rand)}};
-  if (drawn) facts.push_back({"pixels a side", std::to_string(p.raster_resolution)});
-  if (!drawn && p.method != Method::kRandom) {
-    if (p.method != Method::kGvs) {  // which has fixed ones
-      facts.push_back({"border samples an edge", std::to_string(p.n_abs_edge)});
-      facts.push_back({"their spacing, in radians", limit(p.abs_spacing)});
-      facts.push_back({"reverse samples an edge", std::to_string(p.n_rs_edge)});
-      facts.push_back({"reverse samples on faces", std::to_string(p.n_rs_area)});
-      facts.push_back({"reverse stride", std::to_string(p.reverse_stride)});
-      facts.push_back({"order", orderName(p.order)});
+std::vector<ReportFact> parameterFacts(const BakeParams& params) {
+  std::vector<ReportFact> facts;
+  for (const ParamGroup group : kParamGroups) {
+    for (const Param& param : kParams) {
+      if (param.group != group || !isUsedBy(param, params.method)) continue;
+      facts.push_back({param.label, shownText(param, params)});
     }
-    const std::vector<ReportFact> exploration = {
-        {"border distance", fmt::format("{:g} + {:g} of distance", p.delta_abs, p.delta_abs_relative)},
-        {"discontinuity", fmt::format("{:g} + {:g} of distance", p.delta_rs, p.delta_rs_relative)},
-        {"rays of a batch", std::to_string(p.batch_rays)}};
-    facts.insert(facts.end(), exploration.begin(), exploration.end());
   }
-  const std::vector<ReportFact> stop = {{"T", std::to_string(p.threshold)},
-                                        {"quiet iterations", std::to_string(p.quiet_iterations)},
-                                        {"target error", limit(p.target_error)},
-                                        {"most rays a cell", limit(p.max_rays)},
-                                        {"most seconds a cell", limit(p.max_seconds)},
-                                        {"validation rays", std::to_string(p.validation_rays)},
-                                        {"seed", std::to_string(p.seed)}};
-  facts.insert(facts.end(), stop.begin(), stop.end());
   return facts;
 }
 

@@ -1,6 +1,7 @@
 #include "core/bake/report_json.h"
 
 #include "core/base/text.h"
+#include "core/pvs/param_table.h"
 
 namespace sightline {
 
@@ -33,26 +34,16 @@ Json toJson(const std::optional<DeviceInfo>& device) {
 }
 
 Json toJson(const BakeParams& params) {
-  return {{"method", methodName(params.method)},
-          {"n_rand", params.n_rand},
-          {"n_abs_edge", params.n_abs_edge},
-          {"n_rs_edge", params.n_rs_edge},
-          {"n_rs_area", params.n_rs_area},
-          {"delta_abs_relative", params.delta_abs_relative},
-          {"delta_abs", params.delta_abs},
-          {"delta_rs_relative", params.delta_rs_relative},
-          {"delta_rs", params.delta_rs},
-          {"threshold", params.threshold},
-          {"quiet_iterations", params.quiet_iterations},
-          {"max_rays", params.max_rays},
-          {"max_seconds", params.max_seconds},
-          {"batch_rays", params.batch_rays},
-          {"validation_rays", params.validation_rays},
-          {"raster_resolution", params.raster_resolution},
-          {"target_error", params.target_error},
-          {"abs_spacing", params.abs_spacing},
-          {"reverse_stride", params.reverse_stride},
-          {"order", orderName(params.order)}};
+  Json json;
+  visitParams(params, [&](const Param& param, const auto& value) {
+    if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>) {
+      json[param.name] = valueText(param, params);
+    } else {
+      json[param.name] = value;
+    }
+  });
+  json.erase("seed");  // the reports have it beside the parameters
+  return json;
 }
 
 }  // namespace sightline

@@ -1,8 +1,5 @@
 #include "core/cli/bake_options.h"
 
-#include <fmt/core.h>
-
-#include <limits>
 #include <map>
 
 #include "core/cli/device_check.h"
@@ -10,59 +7,60 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/gvs/thesis_params.h"
+#include "core/pvs/param_table.h"
 
 namespace sightline {
 namespace {
 
-constexpr uint64_t kMostRays = 1'000'000'000'000'000'000;
-constexpr uint64_t kMostValidationRays = 1'000'000'000'000'000;
 constexpr const char* kParamsGroup = "Parameters (they decide the result)";
 
-void declareMethod(CLI::App& command, BakeParams& params) {
-  command
+CLI::Option* declareValue(CLI::App& command, const Param& param, const ParamField<Method>& field,
+                          BakeParams& params) {
+  return command
       .add_option_function<std::string>(
-          "--method", [&params](const std::string& name) { params.method = *methodOf(name); },
-          "gvs++; gvs: the original, with fewer border and reverse rays; random: random rays alone; raster: "
-          "drawn hemicubes, on vulkan only; naive: gvs++ with the set on the host, for comparison")
+          optionOf(param),
+          [&params, field](const std::string& name) { params.*field.member = *methodOf(name); }, param.help)
       ->check(oneOf(bakeMethods()))
       ->type_name("NAME")
-      ->default_str(methodName(params.method))
-      ->group(kParamsGroup);
+      ->default_str(valueText(param, params));
 }
 
-template <typename Value>
-void declareCount(CLI::App& command, const char* name, Value& value, uint64_t low, uint64_t high,
-                  const char* help) {
-  command.add_option(name, value, help)
-      ->transform(wholeNumber(low, high))
-      ->type_name("N")
-      ->capture_default_str()
-      ->group(kParamsGroup);
+CLI::Option* declareValue(CLI::App& command, const Param& param, const ParamField<Order>& field,
+                          BakeParams& params) {
+  return command
+      .add_option_function<std::string>(
+          optionOf(param),
+          [&params, field](const std::string& name) { params.*field.member = *orderOf(name); }, param.help)
+      ->check(oneOf({"yield", "queue"}))
+      ->type_name("NAME")
+      ->default_str(valueText(param, params));
 }
 
-template <typename Value>
-void declareNumber(CLI::App& command, const char* name, Value& value, const char* help) {
-  command.add_option(name, value, help)
-      ->check(between(0, double(std::numeric_limits<float>::max())))
-      ->type_name("X")
-      ->default_str(fmt::format("{}", value))
+template <typename Number>
+CLI::Option* declareValue(CLI::App& command, const Param& param, const ParamField<Number>& field,
+                          BakeParams& params) {
+  CLI::Option* option = command.add_option(optionOf(param), params.*field.member, param.help);
+  if constexpr (std::is_integral_v<Number>) {
+    option->transform(wholeNumber(field.low, field.high))->type_name("N");
+  } else {
+    option->check(between(double(field.low), double(field.high)))->type_name("X");
+  }
+  const bool off = params.*field.member < field.low;  // its default is none that may be given
+  return off ? option : option->default_str(valueText(param, params));
+}
+
+/// The option of a line of the table: name, range, default and help are what stands there.
+CLI::Option* declareParam(CLI::App& command, BakeParams& params, const Param& param) {
+  return std::visit([&](const auto& field) { return declareValue(command, param, field, params); },
+                    param.field)
       ->group(kParamsGroup);
 }
 
 void declareLimits(CLI::App& command, BakeParams& params) {
-  declareCount(command, "--max-rays", params.max_rays, 0, kMostRays,
-               "stop a cell after so many rays (0: no limit)");
-  declareNumber(command, "--max-seconds", params.max_seconds,
-                "stop a cell after so many seconds (0: no limit)");
-  command
-      .add_option("--target-error", params.target_error,
-                  "stop a cell when the share of wrong pixels is below E with 95 % confidence, instead of by "
-                  "--threshold (docs/evaluation.md)")
-      ->check(between(kSmallestTargetError, 0.999999))
-      ->type_name("E")
-      ->group(kParamsGroup);
-  declareCount(command, "--validation-rays", params.validation_rays, 0, kMostValidationRays,
-               "rays that measure what a cell missed");
+  declareParam(command, params, paramOf("max_rays"));
+  declareParam(command, params, paramOf("max_seconds"));
+  declareParam(command, params, paramOf("target_error"))->type_name("E");
+  declareParam(command, params, paramOf("validation_rays"));
 }
 
 }  // namespace
@@ -79,48 +77,14 @@ void declareSampling(CLI::App& command, BakeParams& params) {
           "the thesis's samples, distances in world units (0.001, 0.985), order and stop rule; what is "
           "given beside it wins")
       ->group(kParamsGroup);
-  declareCount(command, "--n-rand", params.n_rand, 1, 4'294'967'293, "random rays an iteration");
-  declareCount(command, "--n-abs-edge", params.n_abs_edge, 0, 1000,
-               "samples along each long edge of the border polygon at most");
-  declareNumber(command, "--abs-spacing", params.abs_spacing,
-                "fewer of them where they come closer to each other, in radians seen from the ray's origin "
-                "(0: never)");
-  declareCount(command, "--n-rs-edge", params.n_rs_edge, 0, 1000,
-               "reverse samples along each edge of the cell's faces");
-  declareCount(command, "--n-rs-area", params.n_rs_area, 0, 100000, "reverse samples on the cell's faces");
-  declareCount(
-      command, "--reverse-stride", params.reverse_stride, 1, std::numeric_limits<uint32_t>::max(),
-      "of neighbouring border samples with the same occluder, reverse samples for the first and every "
-      "N-th (1: for all)");
-  command
-      .add_option_function<std::string>(
-          "--order", [&params](const std::string& name) { params.order = *orderOf(name); },
-          "yield: the kind of ray that finds most goes first; queue: reverse rays of a batch follow its "
-          "border rays, as in the thesis")
-      ->check(oneOf({"yield", "queue"}))
-      ->type_name("NAME")
-      ->default_str(orderName(params.order))
-      ->group(kParamsGroup);
-  declareNumber(command, "--delta-abs", params.delta_abs,
-                "border distance in world units (thesis: 0.001), added to");
-  declareNumber(command, "--delta-abs-relative", params.delta_abs_relative,
-                "border distance as a share of the distance");
-  declareNumber(command, "--delta-rs", params.delta_rs, "discontinuity threshold in world units, added to");
-  declareNumber(command, "--delta-rs-relative", params.delta_rs_relative,
-                "discontinuity threshold as a share of the distance");
-  declareCount(command, "--raster-resolution", params.raster_resolution, 16, 16384,
-               "raster: pixels along an edge of a hemicube's front");
-  declareCount(command, "--threshold", params.threshold, 0, std::numeric_limits<uint32_t>::max(),
-               "T: a quiet iteration finds fewer new triangles");
-  declareCount(command, "--quiet-iterations", params.quiet_iterations, 1, 1000000,
-               "stop after so many of them in a row");
-  declareCount(command, "--batch-rays", params.batch_rays, 4096, 1u << 28,
-               "rays of a border or reverse batch at most");
-  command.add_option("--seed", params.seed, "seed of the random rays, 0 to 2^64 - 1")
-      ->transform(wholeNumber())
-      ->type_name("N")
-      ->capture_default_str()
-      ->group(kParamsGroup);
+  for (const Param* param :
+       {&paramOf("n_rand"), &paramOf("n_abs_edge"), &paramOf("abs_spacing"), &paramOf("n_rs_edge"),
+        &paramOf("n_rs_area"), &paramOf("reverse_stride"), &paramOf("order"), &paramOf("delta_abs"),
+        &paramOf("delta_abs_relative"), &paramOf("delta_rs"), &paramOf("delta_rs_relative"),
+        &paramOf("raster_resolution"), &paramOf("threshold"), &paramOf("quiet_iterations"),
+        &paramOf("batch_rays"), &paramOf("seed")}) {
+    declareParam(command, params, *param);
+  }
 }
 
 void declareMachine(CLI::App& command, std::string& device, DeviceOptions& options, bool& spatial_splits) {
@@ -193,7 +157,7 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
       command, options.free_side,
       "for the warning of cells inside of solids: front, back (turned faces) or any (no warning)");
   declareMachine(command, options.device, options.device_options, options.spatial_splits);
-  declareMethod(command, options.params);
+  declareParam(command, options.params, paramOf("method"));
   declareSampling(command, options.params);
   declareLimits(command, options.params);
   command.footer(kBakeFooter);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/device/device.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/bake_params.h"
 #include "core/scene/in_solid.h"
 
 namespace sightline {

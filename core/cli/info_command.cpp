@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <cstring>
 #include <fstream>
@@ -10,6 +10,7 @@
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
+#include "core/pvs/param_table.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
 
@@ -77,26 +78,18 @@ void showCells(const std::filesystem::path& file) {
   for (const ViewCell& cell : cells) row(cell.name, cellLine(cell));
 }
 
+/// A row a group, with the parameters' names in JSON and options.
 void showParams(const BakeParams& params) {
-  row("method", methodName(params.method));
-  row("seed", std::to_string(params.seed));
-  row("samples", fmt::format("n_rand {}, n_abs_edge {}, n_rs_edge {}, n_rs_area {}", params.n_rand,
-                             params.n_abs_edge, params.n_rs_edge, params.n_rs_area));
-  row("thinning", fmt::format("abs_spacing {:g}, reverse_stride {}, order {}", params.abs_spacing,
-                              params.reverse_stride, orderName(params.order)));
-  row("distances",
-      fmt::format("delta_abs {:g} + {:g} of the distance, delta_rs {:g} + {:g} of the distance",
-                  params.delta_abs, params.delta_abs_relative, params.delta_rs, params.delta_rs_relative));
-  const std::string rule =
-      params.target_error > 0
-          ? fmt::format("wrong pixels below {:g} of all, with 95 % confidence", params.target_error)
-          : fmt::format("fewer than {} new triangles in {}", params.threshold,
-                        counted(params.quiet_iterations, "iteration"));
-  row("stop rule",
-      fmt::format("{}{}{}", rule, params.max_rays ? fmt::format(", {} rays", params.max_rays) : "",
-                  params.max_seconds > 0 ? fmt::format(", {:g} s", params.max_seconds) : ""));
-  row("batch", fmt::format("{} rays", params.batch_rays));
-  row("validation", fmt::format("{} rays", params.validation_rays));
+  for (const ParamGroup group : kParamGroups) {
+    const std::string row_name = paramGroupName(group);
+    std::vector<std::string> values;
+    for (const Param& param : kParams) {
+      if (param.group != group) continue;
+      const std::string value = shownText(param, params);
+      values.push_back(row_name == param.name ? value : fmt::format("{} {}", param.name, value));
+    }
+    row(row_name, fmt::format("{}", fmt::join(values, ", ")));
+  }
 }
 
 void showPvs(const std::filesystem::path& file) {

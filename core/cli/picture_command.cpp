@@ -17,7 +17,7 @@
 #include "core/io/file_io.h"
 #include "core/picture/picture.h"
 #include "core/pvs/choose_cell.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/scene/scene.h"
 

@@ -8,7 +8,8 @@
 #include "core/device/device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/measure/pixel_error.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/bake_params.h"
+#include "core/pvs/cell_pvs.h"
 #include "core/scene/scene.h"
 
 // Methods against each other at equal budgets (thesis 7.1 and 7.2): how large and how wrong their sets are

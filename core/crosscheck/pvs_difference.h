@@ -7,7 +7,8 @@
 #include "core/crosscheck/difference.h"
 #include "core/device/device.h"
 #include "core/gvs/bake_cell.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/bake_params.h"
+#include "core/pvs/cell_pvs.h"
 #include "core/verify/cell_sight.h"
 
 namespace sightline {

@@ -1,7 +1,7 @@
 #pragma once
 #include <string>
 
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

@@ -6,7 +6,8 @@
 #include "core/device/device.h"
 #include "core/gvs/bake_progress.h"
 #include "core/gvs/bake_trace.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/bake_params.h"
+#include "core/pvs/cell_pvs.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "core/base/splitmix.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/missing_bound.h"
 
 namespace sightline {
 namespace {

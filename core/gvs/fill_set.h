@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "core/pvs/pvs.h"
+#include "core/pvs/cell_pvs.h"
 #include "core/shared/types.h"
 
 namespace sightline {

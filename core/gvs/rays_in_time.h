@@ -2,7 +2,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/pvs/pvs.h"
+#include "core/pvs/bake_params.h"
+#include "core/pvs/cell_stats.h"
 
 namespace sightline {
 

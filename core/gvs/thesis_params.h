@@ -1,5 +1,5 @@
 #pragma once
-#include "core/pvs/pvs.h"
+#include "core/pvs/bake_params.h"
 
 namespace sightline {
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "core/pvs/pvs.h"
+#include "core/pvs/cell_pvs.h"
 #include "core/shared/types.h"
 
 namespace sightline {

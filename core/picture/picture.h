@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/io/png.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/cell_pvs.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

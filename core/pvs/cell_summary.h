@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/pvs/pvs.h"
+#include "core/pvs/missing_bound.h"
+#include "core/pvs/pvs_file.h"
 
 namespace sightline {
 

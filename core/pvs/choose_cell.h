@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <string>
 
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 
 namespace sightline {
 

@@ -2,11 +2,12 @@
 // the binomial", Biometrika 1934; the binomial's probabilities after C. Loader, "Fast and accurate
 // computation of binomial probabilities", 2000: saddle point and deviance instead of differences of
 // logarithms of factorials, which at 1e10 rays would lose six digits.
+#include "core/pvs/missing_bound.h"
+
 #include <cmath>
 #include <numbers>
 
 #include "core/base/portable_math.h"
-#include "core/pvs/pvs.h"
 
 namespace sightline {
 namespace {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/pvs/param_table.h"
 #include "core/pvs/set_codec.h"
 #include "core/scene/cell_problem.h"
 
@@ -25,50 +26,32 @@ void require(bool condition, const char* problem) {
 }
 
 void writeParams(ByteWriter& out, const BakeParams& params) {
-  out.number(uint32_t(params.method));
-  for (uint32_t value : {params.n_rand, params.n_abs_edge, params.n_rs_edge, params.n_rs_area}) {
-    out.number(value);
-  }
-  for (float value :
-       {params.delta_abs_relative, params.delta_abs, params.delta_rs_relative, params.delta_rs}) {
-    out.number(value);
-  }
-  for (uint32_t value : {params.threshold, params.quiet_iterations, params.batch_rays}) out.number(value);
-  for (uint64_t value : {params.max_rays, params.validation_rays, params.seed}) out.number(value);
-  out.number(params.max_seconds);
-  out.number(params.raster_resolution);
-  out.number(params.target_error);
-  out.number(params.abs_spacing);
-  out.number(params.reverse_stride);
-  out.number(uint32_t(params.order));
+  visitParams(params, [&](const Param&, const auto& value) {
+    if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>) {
+      out.number(uint32_t(value));
+    } else {
+      out.number(value);
+    }
+  });
 }
 
-BakeParams readParams(ByteReader& in) {
+template <typename Value>
+Value readValue(ByteReader& in, const Param& param, const ParamField<Value>& field) {
+  if constexpr (std::is_enum_v<Value>) {
+    const auto number = in.number<uint32_t>();
+    if (number > uint32_t(field.high)) throw Damage(std::string("unknown ") + param.name);
+    return Value(number);
+  } else {
+    return in.number<Value>();
+  }
+}
+
+BakeParams readParams(ByteReader& in, uint32_t version) {
   BakeParams params;
-  const auto method = in.number<uint32_t>();
-  require(method <= uint32_t(Method::kNaive), "unknown method");
-  params.method = Method(method);
-  for (uint32_t* value : {&params.n_rand, &params.n_abs_edge, &params.n_rs_edge, &params.n_rs_area}) {
-    *value = in.number<uint32_t>();
+  for (const Param& param : kParams) {
+    if (param.since > version) continue;
+    std::visit([&](const auto& field) { params.*field.member = readValue(in, param, field); }, param.field);
   }
-  for (float* value :
-       {&params.delta_abs_relative, &params.delta_abs, &params.delta_rs_relative, &params.delta_rs}) {
-    *value = in.number<float>();
-  }
-  for (uint32_t* value : {&params.threshold, &params.quiet_iterations, &params.batch_rays}) {
-    *value = in.number<uint32_t>();
-  }
-  for (uint64_t* value : {&params.max_rays, &params.validation_rays, &params.seed}) {
-    *value = in.number<uint64_t>();
-  }
-  params.max_seconds = in.number<double>();
-  params.raster_resolution = in.number<uint32_t>();
-  params.target_error = in.number<double>();
-  params.abs_spacing = in.number<float>();
-  params.reverse_stride = in.number<uint32_t>();
-  const auto order = in.number<uint32_t>();
-  require(order <= uint32_t(Order::kYield), "unknown order");
-  params.order = Order(order);
   return params;
 }
 
@@ -202,7 +185,7 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version) {
   require(flags <= kFlagWitnesses, "unknown flags");
   pvs.has_witnesses = (flags & kFlagWitnesses) != 0;
   pvs.algorithm = version < kPvsVersionWithCosts ? kFirstAlgorithm : in.number<uint32_t>();
-  pvs.params = readParams(in);
+  pvs.params = readParams(in, version);
   pvs.scene_name = in.text();
   if (version < kPvsVersionWithCosts) {
     pvs.device = in.text();

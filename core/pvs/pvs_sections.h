@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/io/byte_stream.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 
 // The parts of a .pvs file as docs/pvs-format.md specifies them.
 namespace sightline {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/io/byte_stream.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 
 namespace sightline {
 
@@ -29,7 +29,8 @@ PartialPvs loadPartialPvs(const std::filesystem::path& part);
 /// The same for a file's content; `part` is its name, for messages.
 PartialPvs parsePartialPvs(const Bytes& bytes, const std::filesystem::path& part);
 
-/// loadPvs, or for a name that ends in ".part" the finished cells of a bake in work. Throws Error.
+/// loadPvs, or for a name that ends in ".part" the finished cells of a bake in work. Throws BadPvs, too where
+/// not even its head is there, or Error.
 PvsFile loadFinishedCells(const std::filesystem::path& file);
 
 /// Writes a .pvs file cell by cell. Cells are appended to a part file, each with what it took and flushed

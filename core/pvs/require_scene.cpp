@@ -1,7 +1,7 @@
 #include <fmt/core.h>
 
 #include "core/base/error.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 
 namespace sightline {
 

@@ -1,6 +1,6 @@
 #include "core/io/file_io.h"
 #include "core/pvs/checksum.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 #include "core/pvs/pvs_sections.h"
 
 namespace sightline {

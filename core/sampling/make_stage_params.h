@@ -1,7 +1,7 @@
 #pragma once
 #include <span>
 
-#include "core/pvs/pvs.h"
+#include "core/pvs/bake_params.h"
 #include "core/shared/stage_params.h"
 
 namespace sightline {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/judge/judge_ray.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/cell_pvs.h"
 #include "core/scene/cell_frame.h"
 
 namespace sightline {

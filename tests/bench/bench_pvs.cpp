@@ -15,7 +15,7 @@
 #include <stdexcept>
 
 #include "core/base/error.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 #include "core/pvs/set_codec.h"
 
 namespace sightline {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/pvs/param_table.h"
 #include "tests/cli/run_program.h"
 #include "tests/cli/run_separately.h"
 #include "tests/scene/files.h"
@@ -50,8 +51,8 @@ TEST(Help, IsTheSameHoweverItIsAskedFor) {
   EXPECT_EQ(help.errors, "");
   EXPECT_EQ(help.output, runSeparately("--help", folder / "").output);
   const auto commands = listedCommands(help.output);
-  for (const char* name : {"bake", "cells", "compare", "crosscheck", "devices", "export", "help", "info",
-                           "measure", "picture", "scene", "verify"}) {
+  for (const char* name : {"bake", "cells", "compare", "crosscheck", "devices", "diff", "export", "help",
+                           "info", "measure", "picture", "scene", "verify"}) {
     EXPECT_EQ(std::count(commands.begin(), commands.end(), name), 1) << name << "\n" << help.output;
   }
   for (const std::string& name : commands) {
@@ -77,6 +78,14 @@ TEST(Help, NamesAnUnknownCommand) {
             "sightline: unexpected argument cells (see: sightline help --help)\n");
 }
 
+/// The list in declareSampling and beside it has all of the table.
+TEST(Help, OfBakeHasAnOptionForEachParameter) {
+  const std::string help = runProgram("help bake").output;
+  for (const Param& param : kParams) {
+    EXPECT_NE(help.find("  " + optionOf(param) + " "), std::string::npos) << param.name;
+  }
+}
+
 /// A terminal has 80 columns, or more.
 TEST(Help, FitsATerminal) {
   const std::string help = runProgram("help").output;
@@ -100,7 +109,7 @@ TEST(Help, ExamplesRunAsTheyStand) {
   for (const std::string& example : examplesOf(runProgram("help scene").output)) run(example, scenes);
   run("sightline scene city -o city.glb --triangles 2k", folder);
   run("sightline cells city.glb -o cells.json --path -5.5,1.5,-20 -5.5,1.5,20 --width 2 --length 40", folder);
-  for (const char* command : {"bake", "measure", "compare", "crosscheck"}) {
+  for (const char* command : {"bake", "diff", "measure", "compare", "crosscheck"}) {
     const auto examples = examplesOf(runProgram(std::string("help ") + command).output);
     EXPECT_FALSE(examples.empty()) << command;
     for (const std::string& example : examples) run(example, folder);

@@ -10,6 +10,7 @@
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
+#include "core/pvs/param_table.h"
 #include "tests/cli/run_program.h"
 #include "tests/output/example_pvs.h"
 #include "tests/output/version_3_file.h"
@@ -139,6 +140,39 @@ TEST(InfoCommand, SaysOfWhichFormatAndAlgorithmASetIs) {
   expectSays("info " + (files / "driver.pvs"), {"revision 5, intersection test of GPU, driver 5\n"});
   writeBytes(files / "old.pvs", kVersion3File);
   expectSays("info " + (files / "old.pvs"), {"format version 3", "revision 1\n", "2 of 3 baked"});
+}
+
+TEST(InfoCommand, ShowsEachParameter) {
+  const Files files;
+  PvsFile pvs = loadPvs(files.pvs());
+  const std::string before = runProgram("info " + files.pvs()).output;
+  for (const Param& param : kParams) {
+    PvsFile other = pvs;
+    std::visit(
+        [&](const auto& field) {
+          auto& value = other.params.*field.member;
+          value = value == field.low ? field.high : field.low;
+        },
+        param.field);
+    savePvs(other, files / "other.pvs");
+    const std::string name = param.name, value = shownText(param, other.params);
+    const bool own_row = paramGroupName(param.group) == name;
+    const std::string shown = own_row ? fmt::format("{:<16} {}", name, value) : name + " " + value;
+    EXPECT_EQ(before.find(shown), std::string::npos) << shown;
+    expectSays("info " + (files / "other.pvs"), {shown.c_str()});
+  }
+}
+
+/// Of a file without even a head there is nothing to say; of one that was cut off later, what is there.
+TEST(InfoCommand, SaysWhatATornPartFileHolds) {
+  const Files files;
+  const auto bytes = readBytes(files.pvs());
+  for (const size_t size : {size_t(0), size_t(10), size_t(16), size_t(60)}) {
+    writeBytes(files / "torn.pvs.part", {bytes.begin(), bytes.begin() + ptrdiff_t(size)});
+    expectFails("info " + (files / "torn.pvs.part"), 1, "torn.pvs.part: holds no bake yet: ");
+  }
+  writeBytes(files / "cut.pvs.part", {bytes.begin(), bytes.end() - 200});
+  expectSays("info " + (files / "cut.pvs.part"), {"0 of 1 baked"});
 }
 
 TEST(ExportCommand, WritesIdsAndJson) {

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 #include "tests/cli/run_program.h"
 #include "tests/support/temporary_folder.h"
 

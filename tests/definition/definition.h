@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/judge/judge.h"
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 #include "core/scene/cell_frame.h"
 #include "tests/support/random_triangles.h"
 

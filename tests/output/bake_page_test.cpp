@@ -177,10 +177,10 @@ TEST(BakePage, ListsTheParametersOfTheMethod) {
   };
   EXPECT_TRUE(has(Method::kGvspp, "border samples an edge"));
   EXPECT_FALSE(has(Method::kGvs, "border samples an edge"));
-  EXPECT_TRUE(has(Method::kGvs, "discontinuity"));
-  EXPECT_FALSE(has(Method::kRandom, "discontinuity"));
+  EXPECT_TRUE(has(Method::kGvs, "discontinuity, share of the distance"));
+  EXPECT_FALSE(has(Method::kRandom, "discontinuity, share of the distance"));
   EXPECT_TRUE(has(Method::kRaster, "pixels a side"));
-  EXPECT_FALSE(has(Method::kRaster, "random rays an iteration"));
+  EXPECT_FALSE(has(Method::kRaster, "rays of a batch"));
 }
 
 TEST(BakePage, NoNameBreaksIt) {

@@ -375,6 +375,19 @@ TEST(Bake, RefusesOtherInputsAndOverwritesWhenAsked) {
   }
 }
 
+/// Nothing is lost with it.
+TEST(Bake, APartFileWithoutCellsIsInNobodysWay) {
+  TemporaryFolder folder;
+  { PvsWriter(folder / "x.pvs.part").begin(fiveCells()); }
+  ASSERT_GT(std::filesystem::file_size(folder / "x.pvs.part"), 0u);
+  PvsFile other = fiveCells();
+  other.params.seed = 99;
+  Bake bake(other, folder / "x.pvs");
+  EXPECT_EQ(bake.resumed(), 0u);
+  EXPECT_TRUE(bake.run("fake", fakeBaker));
+  EXPECT_EQ(loadPvs(folder / "x.pvs").params.seed, 99u);
+}
+
 TEST(Bake, AnInterruptedOverwriteGoesOn) {
   TemporaryFolder folder;
   EXPECT_TRUE(Bake(fiveCells(), folder / "x.pvs").run("fake", fakeBaker));

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/pvs/pvs.h"
+#include "core/pvs/pvs_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace sightline {

@@ -1,10 +1,11 @@
+#include "core/pvs/missing_bound.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "core/base/portable_math.h"
-#include "core/pvs/pvs.h"
 
 namespace sightline {
 namespace {

@@ -1,12 +1,12 @@
-#include "core/pvs/pvs.h"
-
 #include <fmt/core.h>
 #include <xxhash.h>
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "core/io/file_io.h"
+#include "core/pvs/pvs_file.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
 
@@ -211,7 +211,13 @@ PartialPvs parsePartialPvs(const Bytes& bytes, const std::filesystem::path& part
 }
 
 PvsFile loadFinishedCells(const std::filesystem::path& file) {
-  return file.extension() == ".part" ? loadPartialPvs(file).pvs : loadPvs(file);
+  if (file.extension() != ".part") return loadPvs(file);
+  PartialPvs left = loadPartialPvs(file);
+  if (left.whole_bytes == 0) {
+    throw BadPvs(fmt::format("{}: holds no bake yet: {}", file.string(),
+                             left.problem.empty() ? "the file is empty" : left.problem));
+  }
+  return std::move(left.pvs);
 }
 
 }  // namespace sightline
