@@ -4,8 +4,8 @@
 
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
+#include "core/cell/cell_problem.h"
 #include "core/io/file_io.h"
-#include "core/scene/cell_problem.h"
 
 namespace sightline {
 namespace {

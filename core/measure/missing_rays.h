@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "core/cell/view_cell.h"
 #include "core/device/device.h"
 #include "core/measure/ranked_set.h"
-#include "core/scene/view_cell.h"
 
 namespace sightline {
 

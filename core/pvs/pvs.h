@@ -5,10 +5,10 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/cell/view_cell.h"
 #include "core/pvs/method.h"
 #include "core/pvs/order.h"
 #include "core/scene/scene.h"
-#include "core/scene/view_cell.h"
 #include "core/shared/types.h"
 
 namespace sightline {

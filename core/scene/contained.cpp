@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cell/cell_frame.h"
 #include "core/scene/box_triangle.h"
-#include "core/scene/cell_frame.h"
 #include "core/scene/leaves_in_box.h"
 #include "core/scene/triangle_area.h"
 
