@@ -7,8 +7,8 @@
 #include "core/base/error.h"
 #include "core/cell/cell_problem.h"
 #include "core/cell/view_cell.h"
+#include "core/formats/json_text.h"
 #include "core/io/file_io.h"
-#include "core/io/json_text.h"
 
 namespace sightline {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "cl_kernels/program_source.h"
 #include "core/base/error.h"
-#include "core/base/parallel_copy.h"
 #include "core/opencl/opencl_devices.h"
+#include "core/trace/parallel_copy.h"
 
 namespace sightline {
 namespace {

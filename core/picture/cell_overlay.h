@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/cell/view_cell.h"
-#include "core/io/png.h"
 #include "core/picture/outside_camera.h"
+#include "core/picture/png.h"
 
 namespace sightline {
 

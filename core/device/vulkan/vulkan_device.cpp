@@ -4,7 +4,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/base/parallel_copy.h"
 #include "core/device/vulkan/vulkan_raster.h"
 #include "core/device/vulkan/vulkan_scene.h"
 #include "core/device/vulkan/vulkan_set.h"
@@ -14,6 +13,7 @@
 #include "core/shared/gvs_border.h"
 #include "core/shared/hemicube.h"
 #include "core/shared/reverse.h"
+#include "core/trace/parallel_copy.h"
 
 namespace sightline {
 namespace {
