@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "core/bake/require_scene.h"
 #include "core/bake/status_line.h"
 #include "core/base/error.h"
 #include "core/base/interrupted.h"

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "bvh/bvh.h"
+#include "core/bake/require_scene.h"
 #include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"

@@ -8,7 +8,6 @@
 #include "core/cell/view_cell.h"
 #include "core/pvs/method.h"
 #include "core/pvs/order.h"
-#include "core/scene/scene.h"
 #include "core/shared/types.h"
 
 namespace sightline {
@@ -130,8 +129,5 @@ PvsFile loadPvs(const std::filesystem::path& file);
 /// Writes to a temporary name beside it, flushes to disk and renames; each pvs.cells with its device. In
 /// pvs.version's stead it writes kPvsVersion. Throws Error.
 void savePvs(const PvsFile& pvs, const std::filesystem::path& file);
-
-/// Throws Error unless `pvs`, read from `file`, was baked of this scene (hash and number of triangles).
-void requireScene(const PvsFile& pvs, const Scene& scene, const std::filesystem::path& file);
 
 }  // namespace sightline
