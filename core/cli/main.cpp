@@ -28,6 +28,13 @@ int fail(std::string line, int exit_code) {
   return exit_code;
 }
 
+/// A command that this program was built without: says so, whatever words follow it.
+[[maybe_unused]] void addLeftOut(CLI::App& app, const std::string& name, const std::string& why) {
+  CLI::App* command = app.add_subcommand(name, why);
+  command->allow_extras();
+  command->callback([name, why] { throw Error(name + ": this program was " + why, kExitUsage); });
+}
+
 int runCommand(CLI::App& app, int argc, char** argv) {
   try {
     refuseSingleDashes(app, argc, argv);
@@ -70,8 +77,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpFormat>());
 #define SL_COMMAND(function) function(app);
+#define SL_COMMAND_LEFT_OUT(name, why) addLeftOut(app, name, why);
 #include "generated/commands.inc"
 #undef SL_COMMAND
+#undef SL_COMMAND_LEFT_OUT
   app.footer("sightline help COMMAND says all about one of them.");  // now: a command would take it over
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) command->group("Commands");
   refuseSlips(app);

@@ -2,21 +2,78 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "core/base/error.h"
 #include "core/device/cpu/cpu_device.h"
 #include "core/device/embree/embree_device.h"
+#ifdef SL_HAVE_OPENCL
 #include "core/device/opencl/opencl_device.h"
-#include "core/device/vulkan/vulkan_device.h"
 #include "core/opencl/opencl_context.h"
+#endif
+#ifdef SL_HAVE_VULKAN
+#include "core/device/vulkan/vulkan_device.h"
 #include "core/vulkan/vulkan_devices.h"
+#endif
 
 namespace sightline {
 
 namespace {
 
-/// The kind alone, or with ":" and a selection.
-bool isOfKind(const std::string& name, const std::string& kind) {
-  return name == kind || name.starts_with(kind + ":");
+/// A kind of devices of which there may be several: NAME, NAME:INDEX or NAME:PART-OF-NAME selects one.
+struct Kind {
+  const char* name;
+  const char* left_out;  ///< why this program has none; null: it has, and the rest is not null
+  std::vector<DeviceInfo> (*list)();
+  void (*require)(const std::string& selector);  ///< throws Error unless it selects a usable one
+  std::string (*intersector)(const std::string& selector);
+  std::unique_ptr<Device> (*make)(const std::string&, const Scene&, const Bvh&, const DeviceOptions&);
+};
+
+#ifdef SL_HAVE_OPENCL
+/// That of core/shared, as on the processor.
+std::string sharedIntersector(const std::string&) {
+  return {};
+}
+#endif
+
+#ifdef SL_HAVE_VULKAN
+void requireVulkanDevice(const std::string& selector) {
+  selectVulkanDevice(selector);
+}
+
+std::string vulkanIntersector(const std::string& selector) {
+  const DeviceInfo info = selectVulkanDevice(selector).info;
+  return info.name + ", " + info.driver;
+}
+#endif
+
+constexpr Kind kKinds[] = {
+#ifdef SL_HAVE_OPENCL
+    {"opencl", nullptr, listOpenClDevices, requireOpenClDevice, sharedIntersector, makeOpenClDevice},
+#else
+    {"opencl", "built without OpenCL (SL_WITH_OPENCL=OFF)", nullptr, nullptr, nullptr, nullptr},
+#endif
+#ifdef SL_HAVE_VULKAN
+    {"vulkan", nullptr, listVulkanDevices, requireVulkanDevice, vulkanIntersector, makeVulkanDevice},
+#else
+    {"vulkan", "built without Vulkan (SL_WITH_VULKAN=OFF)", nullptr, nullptr, nullptr, nullptr},
+#endif
+};
+
+/// The kind that a name is of: alone, or with ":" and a selection. Null: of none.
+const Kind* kindOf(const std::string& name) {
+  const auto found = std::ranges::find_if(kKinds, [&](const Kind& kind) {
+    return name == kind.name || name.starts_with(std::string(kind.name) + ":");
+  });
+  return found == std::end(kKinds) ? nullptr : found;
+}
+
+/// Throws Error if this program has none of the kind.
+void requireKind(const Kind& kind, const std::string& name) {
+  if (kind.left_out == nullptr) return;
+  throw Error(fmt::format("device \"{}\": this program was {}", name, kind.left_out));
 }
 
 [[noreturn]] void throwUnknown(const std::string& name) {
@@ -30,21 +87,28 @@ bool isOfKind(const std::string& name, const std::string& kind) {
 
 std::vector<DeviceInfo> listDevices() {
   std::vector<DeviceInfo> devices{cpuDeviceInfo()};
-  for (DeviceInfo& device : listOpenClDevices()) devices.push_back(std::move(device));
-  for (DeviceInfo& device : listVulkanDevices()) devices.push_back(std::move(device));
+  for (const Kind& kind : kKinds) {
+    if (kind.left_out != nullptr) {
+      DeviceInfo info;
+      info.id = info.name = kind.name;
+      info.unusable = kind.left_out;
+      devices.push_back(std::move(info));
+      continue;
+    }
+    for (DeviceInfo& device : kind.list()) devices.push_back(std::move(device));
+  }
   devices.push_back(embreeDeviceInfo());
   return devices;
 }
 
 bool isDeviceName(const std::string& name) {
-  return name == "cpu" || name == "embree" || isOfKind(name, "opencl") || isOfKind(name, "vulkan");
+  return name == "cpu" || name == "embree" || kindOf(name) != nullptr;
 }
 
 void requireDevice(const std::string& name) {
-  if (isOfKind(name, "opencl")) {
-    requireOpenClDevice(name);
-  } else if (isOfKind(name, "vulkan")) {
-    selectVulkanDevice(name);
+  if (const Kind* kind = kindOf(name)) {
+    requireKind(*kind, name);
+    kind->require(name);
   } else if (name == "embree") {
     requireEmbree();
   } else if (name != "cpu") {
@@ -53,17 +117,20 @@ void requireDevice(const std::string& name) {
 }
 
 std::string intersectorOf(const std::string& name) {
-  if (!isOfKind(name, "vulkan")) return {};
-  const DeviceInfo info = selectVulkanDevice(name).info;
-  return info.name + ", " + info.driver;
+  const Kind* kind = kindOf(name);
+  if (kind == nullptr) return {};
+  requireKind(*kind, name);
+  return kind->intersector(name);
 }
 
 std::unique_ptr<Device> makeDevice(const std::string& name, const Scene& scene, const Bvh& bvh,
                                    const DeviceOptions& options) {
   if (name == "cpu") return makeCpuDevice(scene, bvh, options);
   if (name == "embree") return makeEmbreeDevice(scene);
-  if (isOfKind(name, "opencl")) return makeOpenClDevice(name, scene, bvh, options);
-  if (isOfKind(name, "vulkan")) return makeVulkanDevice(name, scene, bvh, options);
+  if (const Kind* kind = kindOf(name)) {
+    requireKind(*kind, name);
+    return kind->make(name, scene, bvh, options);
+  }
   throwUnknown(name);
 }
 
