@@ -152,8 +152,7 @@ void Bake::goOnAfterPart(bool overwrite) {
   head_.device = left.pvs.device;
 }
 
-bool Bake::run(const std::string& device, const CellBaker& baker, const BakeEvents& events,
-               const std::atomic<bool>* stop) {
+bool Bake::run(const std::string& device, const CellBaker& baker, const BakeEvents& events) {
   if (complete_) return true;
   if (finished_.empty()) head_.device = device;
   if (!begun_) {
@@ -162,7 +161,7 @@ bool Bake::run(const std::string& device, const CellBaker& baker, const BakeEven
   }
   while (finished_.size() < head_.planned.size()) {
     const auto index = uint32_t(finished_.size());
-    if (stop && *stop) return false;
+    if (events.stop && *events.stop) return false;
     try {
       CellPvs pvs = baker(head_.planned[index], index, [&](const BakeProgress& progress) {
         if (events.progress) events.progress(index, progress);

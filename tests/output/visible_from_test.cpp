@@ -82,7 +82,9 @@ TEST(VisibleFrom, IsTheFirstCellThatContainsThePositionAndNoOther) {
     ASSERT_EQ(cellAt(pvs, position), expected) << "position " << n << " of seed 7";
     const auto visible = visibleFrom(pvs, position);
     ASSERT_EQ(visible.has_value(), expected != nullptr);
-    if (visible) ASSERT_EQ(visible->data(), expected->triangles.data());
+    if (visible) {
+      ASSERT_EQ(visible->data(), expected->triangles.data());
+    }
   }
   EXPECT_GT(in_none, 1000);
   EXPECT_GT(in_one, 1000);
