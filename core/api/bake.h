@@ -25,7 +25,7 @@ PvsFile bake(Session& session, std::span<const ViewCell> cells, const BakeParams
 
 /// Where a bake goes and what it keeps.
 struct BakeOutput {
-  std::filesystem::path file;  ///< FILE.part is beside it until all cells are there
+  std::filesystem::path file = {};  ///< FILE.part is beside it until all cells are there
   Witnesses witnesses = Witnesses::kDrop;
   bool overwrite = false;  ///< replace a bake with other inputs, in FILE or FILE.part
 };
