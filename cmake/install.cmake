@@ -21,6 +21,7 @@ add_custom_command(
           -P ${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake
   DEPENDS ${header_inputs} ${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake
   VERBATIM)
+add_custom_target(sightline_headers ALL DEPENDS ${header_files})
 
 # sightline::NAME, an archive of the objects of TARGETS. PUBLIC: libraries that its HEADERS need, PRIVATE: others.
 function(sl_library name)
@@ -30,6 +31,7 @@ function(sl_library name)
   list(TRANSFORM library_HEADERS PREPEND ${PROJECT_BINARY_DIR}/include/sightline/)
   add_library(${target} STATIC ${objects})
   target_sources(${target} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_BINARY_DIR}/include FILES ${library_HEADERS})
+  add_dependencies(${target} sightline_headers)
   target_compile_features(${target} PUBLIC cxx_std_20)
   target_link_libraries(${target} PUBLIC glm::glm ${library_PUBLIC} PRIVATE ${library_PRIVATE})
   string(REPLACE sightline_sightline sightline output sightline_${name})
