@@ -52,7 +52,7 @@ Place placeOf(const ViewCell& cell, const glm::dvec3& position) {
 TEST(VisibleFrom, IsTheFirstCellThatContainsThePositionAndNoOther) {
   constexpr int kCells = 60, kPositions = 20000;
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> place(-10, 10), size(0.5, 6), degrees(-180, 180);
+  std::uniform_real_distribution<double> place(-10, 10), size(1, 9), degrees(-180, 180);
   PvsFile pvs;
   for (int i = 0; i < kCells; ++i) {
     const bool turned = i % 3 != 0;
