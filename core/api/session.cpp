@@ -31,7 +31,7 @@ Device& SessionParts::device(Method method) {
   return *wanted;
 }
 
-Device& SessionParts::anyDevice() {
+Tracer& SessionParts::tracer() {
   if (plain) return *plain;
   return naive ? *naive : device();
 }
@@ -56,15 +56,15 @@ uint64_t Session::sceneHash() {
 }
 
 void Session::open() {
-  parts_->anyDevice();
+  parts_->tracer();
 }
 
 DeviceInfo Session::device() {
-  return parts_->anyDevice().info();
+  return parts_->tracer().info();
 }
 
 void Session::traceRays(std::span<const Ray> rays, std::span<Hit> hits) {
-  parts_->anyDevice().traceRays(rays, hits);
+  parts_->tracer().traceRays(rays, hits);
 }
 
 }  // namespace sightline

@@ -14,7 +14,8 @@ namespace sightline {
 /// Where and how a session works. Nothing of it but the kind of intersection test (device "vulkan") changes
 /// what is found.
 struct SessionOptions {
-  std::string device = "cpu";         ///< a name as core/device/registry/device_names.h has them
+  std::string device = "cpu";         ///< a name as core/device/registry/device_names.h has them, of one that
+                                      ///< bakes
   DeviceOptions device_options = {};  ///< threads are those of the tree, too
   bool spatial_splits = false;  ///< a tree that takes longer to build: faster rays where triangles are long
   std::string scene_name = {};  ///< for people, kept in .pvs files: the scene's file without its folder

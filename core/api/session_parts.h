@@ -20,7 +20,7 @@ struct SessionParts {
   /// The device that bakes by this method; opens it at the first call. The naive method has one of its own.
   Device& device(Method method = Method::kGvspp);
   /// A device that is open already, else device(): for rays that any may trace.
-  Device& anyDevice();
+  Tracer& tracer();
   bool isOpen() const { return plain != nullptr || naive != nullptr; }
 
   const Scene scene;

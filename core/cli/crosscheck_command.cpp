@@ -46,6 +46,40 @@ struct Level {
   const std::vector<ViewCell>& cells;
 };
 
+/// The devices that --devices names; where none of them bakes, the cpu too.
+class Devices {
+ public:
+  Devices(const std::vector<std::string>& names, const Scene& scene, const Bvh& bvh) {
+    for (const std::string& name : names) {
+      Tracer& tracer = whyNoBakes(name).empty() ? addBaker(name, scene, bvh)
+                                                : *owned_.emplace_back(makeTracer(name, scene, bvh));
+      for (const Tracer* earlier : tracers_) {
+        if (earlier->info().id != tracer.info().id) continue;
+        throw Error(fmt::format("--devices: {} is {}, which is named already; name another", name,
+                                earlier->info().id),
+                    kExitUsage);
+      }
+      tracers_.push_back(&tracer);
+    }
+    if (bakers_.empty()) addBaker("cpu", scene, bvh);
+  }
+
+  std::span<Tracer* const> tracers() const { return tracers_; }
+  /// At least one; all of tracers() where all of them bake.
+  std::span<Device* const> bakers() const { return bakers_; }
+
+ private:
+  Tracer& addBaker(const std::string& name, const Scene& scene, const Bvh& bvh) {
+    std::unique_ptr<Device> device = makeDevice(name, scene, bvh);
+    bakers_.push_back(device.get());
+    return *owned_.emplace_back(std::move(device));
+  }
+
+  std::vector<std::unique_ptr<Tracer>> owned_;
+  std::vector<Tracer*> tracers_;
+  std::vector<Device*> bakers_;
+};
+
 /// Disagreements that are written in full.
 constexpr uint32_t kReproducers = 100;
 
@@ -61,7 +95,7 @@ void writeReproducers(const CrosscheckCommand& command, const Level& level, cons
     head.options = fmt::format(" --rounding {}", command.options.rounding.steps);
   }
   const auto maker = [&](size_t d, const Scene& part, const Bvh& tree) {
-    return makeDevice(report.devices[d].id, part, tree);
+    return makeTracer(report.devices[d].id, part, tree);
   };
   StatusLine status;
   size_t written = 0, not_alone = 0;
@@ -133,18 +167,7 @@ void run(const CrosscheckCommand& command) {
   placeElsewhere(scene, cells, command.scale, command.move);
   for (const std::string& name : command.devices) requireDevice(name);
   const Bvh bvh = buildBvh(scene.positions, scene.triangles, {.spatial_splits = command.spatial_splits});
-  std::vector<std::unique_ptr<Device>> devices;
-  std::vector<Device*> pointers;
-  for (const std::string& name : command.devices) {
-    devices.push_back(makeDevice(name, scene, bvh));
-    for (const Device* earlier : pointers) {
-      if (earlier->info().id != devices.back()->info().id) continue;
-      throw Error(
-          fmt::format("--devices: {} is {}, which is named already; name another", name, earlier->info().id),
-          kExitUsage);
-    }
-    pointers.push_back(devices.back().get());
-  }
+  const Devices devices(command.devices, scene, bvh);
 
   CrosscheckHead head{SL_VERSION,      summarize(scene, command.scene.filename().string(), hashScene(scene)),
                       command.scale,   command.move,
@@ -152,13 +175,14 @@ void run(const CrosscheckCommand& command) {
   for (const ViewCell& cell : cells) head.cells.push_back(cell.name);
   fmt::print("{}: {} triangles, {}", command.scene.string(), scene.triangles.size(),
              counted(cells.size(), "cell"));
-  for (const Device* device : pointers) fmt::print("; {}, {}", device->info().id, device->info().name);
+  for (const Tracer* device : devices.tracers())
+    fmt::print("; {}, {}", device->info().id, device->info().name);
   fmt::print("\n");
 
   StopSignal stop;
   StatusLine status;
   CrosscheckReport report = crosscheck(
-      scene, bvh, cells, pointers, command.options,
+      scene, bvh, cells, devices.tracers(), *devices.bakers().front(), command.options,
       [&](RayKind kind, uint64_t done, uint64_t due) {
         status.show([&] {
           return fmt::format("{:<10}  {} of {} rays", rayKindName(kind), shortCount(done), shortCount(due));
@@ -171,7 +195,7 @@ void run(const CrosscheckCommand& command) {
              shortDuration(report.judge_seconds));
   Json json = crosscheckJson(head, report);
   if (command.pvs && stop.exitCode() == 0) {
-    json["pvs"] = comparePvsOfAll(command, {scene, bvh, cells}, pointers, stop, report);
+    json["pvs"] = comparePvsOfAll(command, {scene, bvh, cells}, devices.bakers(), stop, report);
   }
   json["complete"] = stop.exitCode() == 0;
   outputs.save(jsonText(json), command.report);
@@ -284,10 +308,10 @@ void addCrosscheckCommand(CLI::App& app) {
     if (options->pvs && options->devices.size() < 2) {
       throw CLI::ValidationError("--pvs", "compares the sets of two devices; name another in --devices");
     }
-    const auto& devices = options->devices;
-    if (options->pvs && std::find(devices.begin(), devices.end(), "embree") != devices.end()) {
+    for (const std::string& name : options->devices) {
+      if (!options->pvs || whyNoBakes(name).empty()) continue;
       throw CLI::ValidationError("--pvs",
-                                 "embree traces rays only and has no sets; leave it out of --devices");
+                                 name + " traces rays only and has no sets; leave it out of --devices");
     }
     if (!options->reproduce.empty()) options->options.keep_disagreements = kReproducers;
     for (const std::string& name : options->kinds) {

@@ -25,8 +25,8 @@ inline CLI::Validator tracerName() {
 inline CLI::Validator deviceName() {
   return CLI::Validator(
       [](std::string& name) {
-        if (name != "embree") return tracerName()(name);
-        return std::string("embree traces rays for crosscheck and trace only; take cpu, opencl or vulkan");
+        const std::string unknown = tracerName()(name);
+        return unknown.empty() ? whyNoBakes(name) : unknown;
       },
       "");
 }

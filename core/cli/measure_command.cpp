@@ -119,7 +119,7 @@ void removeOldPictures(const MeasureCommand& command, const PvsFile& pvs, std::s
 }
 
 /// One cell of all files.
-void measureOne(const MeasureCommand& command, const Scene& scene, Device& device,
+void measureOne(const MeasureCommand& command, const Scene& scene, Tracer& tracer,
                 const std::vector<PvsFile>& files, uint32_t cell, const MeasureCallback& progress,
                 const std::atomic<bool>* stop, MeasureReport& report) {
   std::vector<RankedSet> sets;
@@ -127,7 +127,7 @@ void measureOne(const MeasureCommand& command, const Scene& scene, Device& devic
     sets.push_back(rankedSet(file.cells[cell].triangles, uint32_t(scene.triangles.size())));
   }
   const ViewCell& view_cell = files.front().cells[cell].cell;
-  const auto errors = measureCell(device, view_cell, cell, sets, report.options, progress, stop);
+  const auto errors = measureCell(tracer, view_cell, cell, sets, report.options, progress, stop);
   report.rays += errors.front().by_prefix.front().pixels;
   for (size_t s = 0; s < files.size(); ++s) {
     const CellPvs& pvs = files[s].cells[cell];
@@ -135,13 +135,13 @@ void measureOne(const MeasureCommand& command, const Scene& scene, Device& devic
         view_cell.name, pvs.triangles.size(), errors[s].by_prefix.front(), errors[s].worst_views, {}};
     if (!command.pictures.empty()) {
       const WorstPictures pictures{command.pictures, files.size() == 1, report.options};
-      measured.pictures = pictures.draw(scene, device, pvs, cell, s, measured.worst_views);
+      measured.pictures = pictures.draw(scene, tracer, pvs, cell, s, measured.worst_views);
     }
     report.sets[s].cells.push_back(std::move(measured));
   }
 }
 
-void measureAll(const MeasureCommand& command, const Scene& scene, Device& device,
+void measureAll(const MeasureCommand& command, const Scene& scene, Tracer& tracer,
                 const std::vector<PvsFile>& files, std::span<const uint32_t> cells, const StopSignal& stop,
                 MeasureReport& report) {
   const auto start = std::chrono::steady_clock::now();
@@ -156,7 +156,7 @@ void measureAll(const MeasureCommand& command, const Scene& scene, Device& devic
         status.show(
             [&] { return statusText(files.front().cells[cells[i]].cell.name, i, cells.size(), p, before); });
       };
-      measureOne(command, scene, device, files, cells[i], show, stop.flag(), report);
+      measureOne(command, scene, tracer, files, cells[i], show, stop.flag(), report);
     }
   } catch (const Interrupted&) {
     report.complete = false;
@@ -191,12 +191,12 @@ void run(const MeasureCommand& command) {
   const Scene& scene = session.scene();
   const std::vector<PvsFile> files = loadSets(command, scene);
   const std::vector<uint32_t> cells = cellsToMeasure(command, files.front());
-  Device& device = session.parts().device();
+  Tracer& tracer = session.parts().tracer();
 
   MeasureReport report;
   report.version = SL_VERSION;
   report.scene = summarize(scene, command.scene.filename().string(), files.front().scene_hash);
-  report.device = device.info();
+  report.device = tracer.info();
   for (size_t s = 0; s < files.size(); ++s) {
     report.sets.push_back({command.pvs[s].string(), files[s].device, files[s].params, {}});
   }
@@ -205,7 +205,7 @@ void run(const MeasureCommand& command) {
   chooseSize(command, report);
   if (!command.pictures.empty()) removeOldPictures(command, files.front(), cells);
   StopSignal stop;
-  measureAll(command, scene, device, files, cells, stop, report);
+  measureAll(command, scene, tracer, files, cells, stop, report);
   std::fputs(measureTable(report).c_str(), stdout);
   if (!report.complete) {
     fmt::print("stopped: {} of {} cells are measured\n", report.sets.front().cells.size(), cells.size());

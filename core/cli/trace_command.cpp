@@ -102,11 +102,11 @@ void run(const TraceCommand& command) {
   for (const std::string& name : command.devices) requireDevice(name);
   const Scene scene = loadScene(command.scene, {.repair = command.repair});
   const Bvh bvh = buildBvh(scene.positions, scene.triangles, {.spatial_splits = command.spatial_splits});
-  std::vector<std::unique_ptr<Device>> devices;
-  std::vector<Device*> pointers;
+  std::vector<std::unique_ptr<Tracer>> devices;
+  std::vector<Tracer*> pointers;
   std::vector<std::string> ids;
   for (const std::string& name : command.devices) {
-    devices.push_back(makeDevice(name, scene, bvh));
+    devices.push_back(makeTracer(name, scene, bvh));
     pointers.push_back(devices.back().get());
     ids.push_back(devices.back()->info().id);
   }

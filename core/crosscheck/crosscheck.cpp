@@ -10,8 +10,6 @@
 #include <tuple>
 
 #include "core/base/interrupted.h"
-#include "core/device/cpu/cpu_device.h"
-#include "core/device/trace_only_device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/shared/ray.h"
 
@@ -102,14 +100,14 @@ class DisagreementList {
 
 class Crosscheck {
  public:
-  Crosscheck(const Scene& scene, const Bvh& bvh, std::span<Device* const> devices,
+  Crosscheck(const Scene& scene, const Bvh& bvh, std::span<Tracer* const> devices,
              const CrosscheckOptions& options)
       : judge_(scene, bvh),
         devices_(devices),
         options_(options),
         worst_(devices.size()),
         disagreements_(options.keep_disagreements) {
-    for (Device* device : devices) report_.devices.push_back(device->info());
+    for (const Tracer* device : devices) report_.devices.push_back(device->info());
     std::vector<RayKind> kinds = options.kinds;
     for (uint32_t k = 0; options.kinds.empty() && k < kRayKinds; ++k) kinds.push_back(RayKind(k));
     for (const RayKind kind : kinds) {
@@ -228,7 +226,7 @@ class Crosscheck {
   }
 
   Judge judge_;
-  std::span<Device* const> devices_;
+  std::span<Tracer* const> devices_;
   const CrosscheckOptions& options_;
   CrosscheckReport report_;
   std::vector<WorstRays> worst_;  ///< by device
@@ -242,14 +240,9 @@ class Crosscheck {
 }  // namespace
 
 CrosscheckReport crosscheck(const Scene& scene, const Bvh& bvh, std::span<const ViewCell> cells,
-                            std::span<Device* const> devices, const CrosscheckOptions& options,
+                            std::span<Tracer* const> devices, Device& baker, const CrosscheckOptions& options,
                             const CrosscheckProgress& progress, const std::atomic<bool>* stop) {
   Crosscheck check(scene, bvh, devices, options);
-  // A bake finds the rays' targets: on the first device that can.
-  const auto baker =
-      std::find_if(devices.begin(), devices.end(), [](const Device* device) { return canBake(*device); });
-  const auto own = baker == devices.end() ? makeCpuDevice(scene, bvh, {}) : nullptr;
-  Device& sampler = own ? *own : **baker;
   const uint64_t due = options.rays * check.kinds();
   uint64_t done = 0;
   const auto report = [&](RayKind kind) {
@@ -261,7 +254,7 @@ CrosscheckReport crosscheck(const Scene& scene, const Bvh& bvh, std::span<const 
       const uint64_t begin = options.rays * c / cells.size(), end = options.rays * (c + 1) / cells.size();
       if (begin == end) continue;
       report(check.kind(0));
-      const RayMaker maker(scene, cells[c], c, sampler, options.seed, end - begin, stop);
+      const RayMaker maker(scene, cells[c], c, baker, options.seed, end - begin, stop);
       for (size_t k = 0; k < check.kinds(); ++k) {
         for (uint64_t first = 0; first < end - begin; first += options.batch_rays) {
           const auto count = size_t(std::min<uint64_t>(options.batch_rays, end - begin - first));

@@ -80,9 +80,10 @@ struct CrosscheckReport {
 using CrosscheckProgress = std::function<void(RayKind kind, uint64_t done, uint64_t due)>;
 
 /// Traces the same rays on all devices, which hold `scene`; the judge decides where they differ. Cells share
-/// the rays. Deterministic but for the seconds. Stops early when *stop becomes true. Throws Error.
+/// the rays, whose targets a bake on `baker` finds. Deterministic but for the seconds. Stops early when *stop
+/// becomes true. Throws Error.
 CrosscheckReport crosscheck(const Scene& scene, const Bvh& bvh, std::span<const ViewCell> cells,
-                            std::span<Device* const> devices, const CrosscheckOptions& options,
+                            std::span<Tracer* const> devices, Device& baker, const CrosscheckOptions& options,
                             const CrosscheckProgress& progress = {}, const std::atomic<bool>* stop = nullptr);
 
 }  // namespace sightline

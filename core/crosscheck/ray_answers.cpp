@@ -28,12 +28,12 @@ bool RayAnswers::legal() const {
   });
 }
 
-RayAnswers askAll(const Judge& judge, const Ray& ray, std::span<Device* const> devices,
+RayAnswers askAll(const Judge& judge, const Ray& ray, std::span<Tracer* const> devices,
                   const RoundingLimit& limit) {
   RayAnswers answers;
   answers.ray = ray;
   answers.exact = judge.nearest(judgeRay(ray));
-  for (Device* device : devices) {
+  for (Tracer* device : devices) {
     Hit hit{};
     device->traceRays({&ray, 1}, {&hit, 1});
     answers.hits.push_back(hit);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "core/bake/cell_json.h"
-#include "core/device/device.h"
 #include "core/judge/ruling.h"
+#include "core/trace/tracer.h"
 
 namespace sightline {
 
@@ -23,7 +23,7 @@ struct RayAnswers {
 };
 
 /// Traces the ray on all devices, which hold the judge's scene. Its direction is not zero, all is finite.
-RayAnswers askAll(const Judge& judge, const Ray& ray, std::span<Device* const> devices,
+RayAnswers askAll(const Judge& judge, const Ray& ray, std::span<Tracer* const> devices,
                   const RoundingLimit& limit = {});
 
 /// Adds "origin", "direction", "exact_triangles", "exact_t" and "answers". devices: their ids.

@@ -146,8 +146,8 @@ Reproducer findReproducer(const Scene& scene, const Judge& judge, const RayAnswe
     result.triangles = triangles;
     result.scene = partOf(scene, triangles);
     const Bvh bvh = buildBvh(result.scene.positions, result.scene.triangles);
-    std::vector<std::unique_ptr<Device>> devices;
-    std::vector<Device*> pointers;
+    std::vector<std::unique_ptr<Tracer>> devices;
+    std::vector<Tracer*> pointers;
     for (size_t d = 0; d < whole.hits.size(); ++d) {
       devices.push_back(makeDevice(d, result.scene, bvh));
       pointers.push_back(devices.back().get());

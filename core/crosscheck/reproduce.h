@@ -20,7 +20,7 @@ struct Reproducer {
 };
 
 /// Makes device number d for another scene and its tree, which outlive it.
-using DeviceMaker = std::function<std::unique_ptr<Device>(size_t d, const Scene& scene, const Bvh& bvh)>;
+using DeviceMaker = std::function<std::unique_ptr<Tracer>(size_t d, const Scene& scene, const Bvh& bvh)>;
 
 /// Looks for triangles around the ray that are enough: those that a device or the judge names and what the
 /// ray passes within rounding; then what shares leaves with them; then what lies about the whole ray. Where

@@ -4,8 +4,8 @@
 
 namespace sightline {
 
-void Device::rasterize(std::span<const ViewFrame>, uint32_t, float) {
-  throw Error(info().id + " cannot rasterise: " + whyNoRaster(), kExitUsage);
+HemicubeDrawer& Device::drawer() {
+  throw Error(info().id + " cannot rasterise: only Vulkan devices do", kExitUsage);
 }
 
 }  // namespace sightline

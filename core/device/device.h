@@ -1,107 +1,17 @@
 #pragma once
-#include <algorithm>
-#include <cstdint>
-#include <memory>
-#include <span>
-#include <string>
-#include <vector>
-
-#include "bvh/bvh.h"
+#include "core/device/cell_sampler.h"
 #include "core/device/device_options.h"
-#include "core/scene/scene.h"
-#include "core/shared/stage_params.h"
-#include "core/shared/types.h"
-#include "core/shared/view_ray.h"
-#include "core/trace/device_info.h"
+#include "core/device/hemicube_drawer.h"
+#include "core/trace/tracer.h"
 
 namespace sightline {
 
-/// Counters of the cell in work, read back after each stage.
-struct DeviceCounters {
-  uint64_t rays = 0;          ///< traced since beginCell
-  uint64_t memory_bytes = 0;  ///< resident on the device now: scene, tree, set, queue, scratch
-  bool hash_set = false;      ///< the set is a hash set, not an array
-};
-
-/// What a launch of border rays did.
-struct BorderBatch {
-  uint32_t entries = 0;          ///< whose border rays were traced
-  uint32_t discontinuities = 0;  ///< appended
-};
-
-/// Runs the stages of GVS++ for one view cell at a time, with scene, set and queue resident. Every
-/// implementation generates the same rays from core/shared and gives the same set, bit for bit.
-///
-///   beginCell -> { traceRandom* | traceBorder | traceReverse, then collect }* -> readPvs
-///
-/// A trace stage inserts the triangles it hits under their ray's index in the batch (1, 2, ...; the lowest
-/// wins). collect closes the batch: it appends the new triangles, in ascending id, to the list.
-/// Not thread-safe. All throw Error.
-class Device {
+/// What bakes: traces any rays, samples view cells, and on some devices draws hemicubes. All parts share the
+/// scene; take the narrowest that does.
+class Device : public Tracer, public CellSampler {
  public:
-  virtual ~Device() = default;
-  virtual DeviceInfo info() const = 0;
-
-  /// Empties set, list and counters. faces: 1..6 as of cellFaces.
-  virtual void beginCell(std::span<const Face> faces, const StageParams& params) = 0;
-
-  /// Random rays of one segment (makeRandomSegment). Several segments may share a batch; their ray indices
-  /// must not overlap.
-  virtual void traceRandom(const RandomSegment& segment) = 0;
-
-  /// Border rays of the list's entries from `first`: of as many blocks of kBorderBlock entries as have at
-  /// most `most_rays` rays, one block at least; the list may end within the last. listing: appends the
-  /// discontinuities that get reverse rays to the cell's list of them.
-  virtual BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) = 0;
-
-  /// Reverse rays of the discontinuities first .. first + count - 1 of those appended since beginCell or
-  /// dropDiscontinuities: reverseRayCount rays each at most.
-  virtual void traceReverse(uint32_t first, uint32_t count) = 0;
-
-  /// Empties the list of discontinuities. Their running numbers, which their reverse rays depend on, go on.
-  virtual void dropDiscontinuities() = 0;
-
-  /// Whether rasterize works here; if not, why in one line.
-  virtual std::string whyNoRaster() const { return "only Vulkan devices rasterise"; }
-
-  /// Draws a hemicube (hemicubeAt, core/sampling/hemicube.h) of resolution * resolution pixels an image, and
-  /// inserts the triangle that each of its hemicubeSamples shows under that sample's index: a batch's
-  /// hemicubes have consecutive indices, and one resolution. Counts samples as rays. near_distance:
-  /// hemicubeNear. A batch is either traced or rasterised. Throws Error where whyNoRaster says something.
-  virtual void rasterize(std::span<const ViewFrame> hemicube, uint32_t resolution, float near_distance);
-
-  /// Closes a batch; returns how many triangles were new. stage: kStage... of the batch.
-  virtual uint32_t collect(uint32_t stage) = 0;
-
-  /// Puts triangles into the set and list without rays (those that the cell contains), in the given order.
-  /// None may be in the set yet, nor twice among them.
-  virtual void insertContained(std::span<const uint32_t> triangles) = 0;
-
-  /// Traces random rays with other shifts than the cell's, without inserting; returns how many hit a triangle
-  /// outside the set.
-  virtual uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) = 0;
-
-  virtual DeviceCounters counters() = 0;
-  /// The whole list, in order of discovery.
-  virtual std::vector<PvsEntry> readPvs() = 0;
-
-  /// Nearest hits of any rays: pictures, tests, cross-checks. hits.size() == rays.size().
-  virtual void traceRays(std::span<const Ray> rays, std::span<Hit> hits) = 0;
-
-  /// Square images of triangle ids (kNoTriangle where a pixel shows nothing): view after view, row after row
-  /// from the top. resolution: 1 .. kMaxViewResolution pixels a side;
-  /// triangles.size() == views.size() * resolution^2. Rays are made on the device, so many views a call are
-  /// the fastest way to see much.
-  virtual void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
-                          std::span<uint32_t> triangles) = 0;
+  /// What draws into the sampler's batches. Throws Error (wrong usage) where the device has no such part.
+  virtual HemicubeDrawer& drawer();
 };
-
-inline constexpr uint32_t kMaxViewResolution = 16384;
-
-/// Views of one launch of traceViews: as many as make up so many pixels, which bounds the buffers.
-inline size_t viewsALaunch(uint32_t resolution) {
-  constexpr uint64_t kPixels = 1u << 24;
-  return std::max<uint64_t>(1, kPixels / (uint64_t(resolution) * resolution));
-}
 
 }  // namespace sightline

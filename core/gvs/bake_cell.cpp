@@ -10,7 +10,6 @@
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
 #include "core/cell/cell_problem.h"
-#include "core/device/naive/naive_device.h"
 #include "core/gvs/error_bound.h"
 #include "core/gvs/exploration_yield.h"
 #include "core/gvs/fill_set.h"
@@ -199,7 +198,7 @@ class CellBake {
     bool more = true;
     for (uint32_t i = 0; i < hemicubes && more; ++i) {
       const Hemicube hemicube = placeHemicube(faces_, next_point_++, stage_params_.shifts);
-      device_.rasterize(hemicube, params_.raster_resolution, near_distance_);
+      device_.drawer().rasterize(hemicube, params_.raster_resolution, near_distance_);
       random_left_ = (hemicubes - 1 - i) * samples;
       more = finishLaunch(kStageRandom, stats_.random);
     }
@@ -455,7 +454,7 @@ CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint3
   if (const auto problem = cellProblem(cell)) {
     throw Error(fmt::format("cell {}, {}: {}", cell_index, cell.name, problem->text()), kExitUsage);
   }
-  if (params.method == Method::kNaive && !isNaiveDevice(device)) {
+  if (params.method == Method::kNaive && !device.info().naive) {
     throw Error(
         device.info().id + ": the method naive takes a device of makeNaiveDevice; on this one it is gvs++",
         kExitUsage);

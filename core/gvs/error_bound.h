@@ -22,7 +22,7 @@ namespace sightline {
 /// when it has failed.
 class ErrorBound {
  public:
-  /// Nearest hits of rays, as Device::traceRays.
+  /// Nearest hits of rays, as Tracer::traceRays.
   using Trace = std::function<void(std::span<const Ray> rays, std::span<Hit> hits)>;
 
   static constexpr uint32_t kAllowedMisses = 8;

@@ -16,7 +16,7 @@ class Classifier {
   /// The sets of one scene, at least one. Throws Error.
   Classifier(std::span<const RankedSet> sets, uint32_t views, uint32_t resolution);
 
-  /// Images (Device::traceViews) of the views from `first` on, as many as `images` holds.
+  /// Images (Tracer::traceViews) of the views from `first` on, as many as `images` holds.
   void classify(uint32_t first, std::span<const uint32_t> images);
 
   /// Error of one view, of each prefix of a set.

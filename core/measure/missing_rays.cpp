@@ -37,7 +37,7 @@ class NumberedRays {
 
 }  // namespace
 
-std::vector<std::vector<uint64_t>> countMissingRays(Device& device, const ViewCell& cell, uint32_t cell_index,
+std::vector<std::vector<uint64_t>> countMissingRays(Tracer& tracer, const ViewCell& cell, uint32_t cell_index,
                                                     uint64_t seed, uint32_t rays,
                                                     std::span<const RankedSet> sets) {
   if (rays < 1 || rays > kMostMissingRays) {
@@ -55,7 +55,7 @@ std::vector<std::vector<uint64_t>> countMissingRays(Device& device, const ViewCe
   for (uint32_t first = 0; first < rays; first += kChunk) {
     const uint32_t count = std::min(rays - first, kChunk);
     tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });
-    device.traceRays(std::span(batch).first(count), std::span(hits).first(count));
+    tracer.traceRays(std::span(batch).first(count), std::span(hits).first(count));
     tbb::parallel_for(size_t(0), sets.size(), [&](size_t s) {
       for (uint32_t i = 0; i < count; ++i) {
         if (hits[i].triangle != kNoTriangle) ++by_level[s][levels[s][hits[i].triangle]];

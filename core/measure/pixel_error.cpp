@@ -28,7 +28,7 @@ double secondsSince(Clock::time_point start) {
 
 /// Traces all views, a launch at a time; the images of one launch are classified while the device traces the
 /// next.
-void traceAndClassify(Device& device, std::span<const ViewFrame> frames, uint32_t resolution,
+void traceAndClassify(Tracer& tracer, std::span<const ViewFrame> frames, uint32_t resolution,
                       Classifier& classifier, const MeasureCallback& progress,
                       const std::atomic<bool>* stop) {
   const auto start = Clock::now();
@@ -42,7 +42,7 @@ void traceAndClassify(Device& device, std::span<const ViewFrame> frames, uint32_
       const auto launch_start = Clock::now();
       const size_t count = std::min(launch_views, frames.size() - done);
       images[turn].resize(count * pixels);
-      device.traceViews(frames.subspan(done, count), resolution, images[turn]);
+      tracer.traceViews(frames.subspan(done, count), resolution, images[turn]);
       if (secondsSince(launch_start) < kLaunchSeconds) launch_views = std::min(most, 2 * launch_views);
       classification.wait();
       classification.run(
@@ -101,7 +101,7 @@ void checkOptions(const MeasureOptions& options) {
           fmt::format("fov must be {} .. {} degrees", kSmallestFov, kLargestFov));
 }
 
-std::vector<SetError> measureCell(Device& device, const ViewCell& cell, uint32_t cell_index,
+std::vector<SetError> measureCell(Tracer& tracer, const ViewCell& cell, uint32_t cell_index,
                                   std::span<const RankedSet> sets, const MeasureOptions& options,
                                   const MeasureCallback& progress, const std::atomic<bool>* stop) {
   checkOptions(options);
@@ -110,7 +110,7 @@ std::vector<SetError> measureCell(Device& device, const ViewCell& cell, uint32_t
   Classifier classifier(sets, options.views, options.resolution);
   const std::vector<ViewFrame> frames =
       measureViews(cell, cell_index, options.views, options.seed, options.fov);
-  traceAndClassify(device, frames, options.resolution, classifier, progress, stop);
+  traceAndClassify(tracer, frames, options.resolution, classifier, progress, stop);
   for (size_t s = 0; s < sets.size(); ++s) {
     errors.push_back(summarizeSet(classifier, s, sets[s].prefixes.size(), options));
   }

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "core/device/device.h"
 #include "core/measure/ranked_set.h"
 #include "core/sampling/views.h"
+#include "core/trace/tracer.h"
 
 // The pixel error (S. Nirenstein and E. Blake 2004; thesis 7.1): images seen from the cell, in which a pixel
 // is wrong if it shows a triangle that is not in the cell's set.
@@ -67,7 +67,7 @@ using MeasureCallback = std::function<void(const MeasureProgress&)>;
 /// Measures any number of sets of one cell with the same views (measureViews), each of which is traced once.
 /// cell_index: the cell's place in its file. The result depends on the device only where its hits do. Throws
 /// Error, and Interrupted (core/gvs/bake_cell.h) when *stop became true.
-std::vector<SetError> measureCell(Device& device, const ViewCell& cell, uint32_t cell_index,
+std::vector<SetError> measureCell(Tracer& tracer, const ViewCell& cell, uint32_t cell_index,
                                   std::span<const RankedSet> sets, const MeasureOptions& options,
                                   const MeasureCallback& progress = {},
                                   const std::atomic<bool>* stop = nullptr);

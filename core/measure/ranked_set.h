@@ -22,9 +22,9 @@ inline constexpr uint32_t kNoRank = 0xffffffffu;
 /// for an id out of range, as does the next.
 RankedSet rankedSet(std::span<const uint32_t> triangles, uint32_t triangle_count);
 
-/// A device's list (Device::readPvs), in the order of discovery. Triangles that the cell contains are known
-/// before any ray: they get rank 0 and take no place, so a prefix counts triangles that rays found. Prefix 0
-/// holds nothing, not even those.
+/// A device's list (CellSampler::readPvs), in the order of discovery. Triangles that the cell contains are
+/// known before any ray: they get rank 0 and take no place, so a prefix counts triangles that rays found.
+/// Prefix 0 holds nothing, not even those.
 RankedSet rankedSet(std::span<const PvsEntry> entries, uint32_t triangle_count,
                     std::vector<uint32_t> prefixes);
 

@@ -11,7 +11,7 @@
 
 namespace sightline {
 
-std::vector<std::string> WorstPictures::draw(const Scene& scene, Device& device, const CellPvs& pvs,
+std::vector<std::string> WorstPictures::draw(const Scene& scene, Tracer& tracer, const CellPvs& pvs,
                                              uint32_t cell_index, size_t set,
                                              std::span<const uint32_t> views) const {
   const std::vector<uint8_t> member = membership(scene, pvs.triangles);
@@ -21,7 +21,7 @@ std::vector<std::string> WorstPictures::draw(const Scene& scene, Device& device,
   for (const uint32_t view : views) {
     const std::string of_set = alone ? "" : fmt::format("-{}", set);
     names.push_back(fmt::format("{}{}-view-{}.png", pictureName(pvs.cell.name, cell_index), of_set, view));
-    device.traceViews(std::span(frames).subspan(view, 1), options.resolution, triangles);
+    tracer.traceViews(std::span(frames).subspan(view, 1), options.resolution, triangles);
     savePng(viewPicture(scene, frames[view], options.resolution, triangles, member), folder / names.back());
   }
   return names;

@@ -18,7 +18,7 @@ struct WorstPictures {
   bool alone = true;
   MeasureOptions options;
 
-  std::vector<std::string> draw(const Scene& scene, Device& device, const CellPvs& pvs, uint32_t cell_index,
+  std::vector<std::string> draw(const Scene& scene, Tracer& tracer, const CellPvs& pvs, uint32_t cell_index,
                                 size_t set, std::span<const uint32_t> views) const;
 };
 

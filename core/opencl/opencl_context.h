@@ -22,7 +22,7 @@ void checkCl(cl_int code, const char* call);
 std::vector<DeviceInfo> listOpenClDevices();
 
 /// Throws Error if the selector (see OpenClContext) selects no device that can run here.
-void requireOpenClDevice(const std::string& selector);
+DeviceInfo requireOpenClDevice(const std::string& selector);
 
 /// Owns one reference to an OpenCL object.
 template <typename Handle, cl_int(CL_API_CALL* kRelease)(Handle)>

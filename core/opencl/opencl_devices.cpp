@@ -94,8 +94,8 @@ OpenClDevice selectOpenClDevice(const std::string& selector) {
       "needs a cache folder that it can write: POCL_CACHE_DIR, else ~/.cache), or take --device cpu");
 }
 
-void requireOpenClDevice(const std::string& selector) {
-  selectOpenClDevice(selector);
+DeviceInfo requireOpenClDevice(const std::string& selector) {
+  return selectOpenClDevice(selector).info;
 }
 
 std::vector<DeviceInfo> listOpenClDevices() {

@@ -10,7 +10,7 @@
 
 namespace sightline {
 
-/// Finds the nearest hits of rays, one each: Device::traceRays.
+/// Finds the nearest hits of rays, one each: Tracer::traceRays.
 using TraceRays = std::function<void(std::span<const Ray> rays, std::span<Hit> hits)>;
 
 /// Sides of a picture, pixels.

@@ -104,8 +104,7 @@ struct PvsFile {
   uint32_t version = kPvsVersion;  ///< of the format that it was read from
   uint32_t algorithm = 0;   ///< kAlgorithmRevision (core/gvs/algorithm_revision.h) of the program that baked;
                             ///< 1 for all that wrote older versions of the format
-  std::string intersector;  ///< intersectorOf the device (core/device/registry/device_names.h): sets
-                            ///< depend on it
+  std::string intersector;  ///< intersectorOf the device (core/trace/device_info.h): the sets depend on it
   uint64_t scene_hash = 0;
   uint32_t triangle_count = 0;  ///< of the scene
   std::string scene_name;       ///< file name without folder, for people

@@ -14,10 +14,17 @@ struct DeviceInfo {
   uint64_t memory_bytes = 0;
   bool on_cpu = false;  ///< a processor does the work (cpu, PoCL, lavapipe): fewer rays are to be had
   bool exact = false;   ///< traces by core/shared/triangle.h, as cpu and opencl do: same sets, bit for bit
+  bool naive = false;   ///< makeNaiveDevice made it: the host samples, hit by hit
   // The driver's own trees (vulkan), once a scene is on the device; else 0.
   uint32_t driver_tree_parts = 0;        ///< bottom-level acceleration structures
   uint64_t driver_tree_bytes = 0;        ///< of all acceleration structures
   double driver_tree_build_seconds = 0;  ///< with compaction
 };
+
+/// Whose intersection test decides what rays hit there: empty for that of core/shared, whose sets are the
+/// same on every device; else the device's name and its driver's version.
+inline std::string intersectorOf(const DeviceInfo& device) {
+  return device.exact ? std::string() : device.name + ", " + device.driver;
+}
 
 }  // namespace sightline

@@ -120,7 +120,7 @@ TEST_F(Raster, ShowsWhatTracingShows) {
     const Hemicube hemicube = hemicubeAt(
         faces[f], xyz3(faces[f].corner) + 0.5f * xyz3(faces[f].edge_u) + 0.25f * xyz3(faces[f].edge_v));
     device->beginCell(faces, StageParams{});
-    device->rasterize(hemicube, kResolution, hemicubeNear(scene, faces));
+    device->drawer().rasterize(hemicube, kResolution, hemicubeNear(scene, faces));
     EXPECT_EQ(device->counters().rays, hemicubeSamples(kResolution));
     device->collect(kStageRandom);
     std::vector<uint32_t> drawn;

@@ -85,14 +85,14 @@ void add(Waste& waste, size_t size, size_t distance, auto&& change) {
 }
 
 /// Traces the border rays of the entries first .. and books them.
-void addEntries(Device& device, const Scene& scene, std::span<const PvsEntry> entries,
+void addEntries(Tracer& tracer, const Scene& scene, std::span<const PvsEntry> entries,
                 const StageParams& params, double reach, Waste& waste) {
   const std::vector<uint64_t> starts = borderStarts(scene, entries, params);
   BorderRays border(scene, entries, starts, params);
   std::vector<Ray> rays(starts.back());
   for (uint32_t i = 0; i < rays.size(); ++i) rays[i] = border(i);
   std::vector<Hit> hits(rays.size());
-  device.traceRays(rays, hits);
+  tracer.traceRays(rays, hits);
   for (size_t e = 0; e < entries.size(); ++e) {
     const uint32_t triangle = entries[e].origin_triangle.w;
     const uint32_t samples = borderSamplesOf(scene, entries[e], params);

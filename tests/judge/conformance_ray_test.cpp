@@ -67,7 +67,7 @@ TEST(ConformanceRay, OurDevicesHitTheLowestId) {
     for (const DeviceInfo& info : listDevices()) {
       if (!info.unusable.empty() || info.id.starts_with("vulkan")) continue;
       Hit hit{};
-      makeDevice(info.id, scene, bvh)->traceRays({&kRay, 1}, {&hit, 1});
+      makeTracer(info.id, scene, bvh)->traceRays({&kRay, 1}, {&hit, 1});
       if (info.id == "embree") {
         const Judge judge(scene, bvh);
         const Verdict verdict = rule(judge, kRay, hit, judge.nearest(judgeRay(kRay))).verdict;

@@ -54,14 +54,14 @@ Outcome compareWith(const Room& room, std::vector<RayKind> kinds, WrongDevice::C
                     uint64_t check_every = 50) {
   const auto right = makeCpuDevice(room.scene, room.bvh, {});
   WrongDevice wrong(room.scene, room.bvh, std::move(change));
-  Device* devices[] = {right.get(), &wrong};
+  Tracer* devices[] = {right.get(), &wrong};
   CrosscheckOptions options;
   options.rays = 3000;
   options.batch_rays = 1000;
   options.kinds = std::move(kinds);
   options.check_every = check_every;
   Outcome outcome;
-  outcome.report = crosscheck(room.scene, room.bvh, std::span(&room.cell, 1), devices, options);
+  outcome.report = crosscheck(room.scene, room.bvh, std::span(&room.cell, 1), devices, *right, options);
   outcome.changed = wrong.changed();
   uint64_t rays = 0;
   for (const KindReport& kind : outcome.report.kinds) rays += kind.rays;
@@ -99,7 +99,7 @@ TEST(Crosscheck, DevicesThatAgreeDifferInNothing) {
 TEST(Crosscheck, StopsWithinABatchAndReportsWhatWasJudged) {
   const Room room;
   const auto device = makeCpuDevice(room.scene, room.bvh, {});
-  Device* devices[] = {device.get()};
+  Tracer* devices[] = {device.get()};
   CrosscheckOptions options;
   options.rays = 100'000;
   options.kinds = {RayKind::kRandom, RayKind::kVertex};
@@ -111,7 +111,7 @@ TEST(Crosscheck, StopsWithinABatchAndReportsWhatWasJudged) {
     stop = done > 0;
   };
   const CrosscheckReport report =
-      crosscheck(room.scene, room.bvh, std::span(&room.cell, 1), devices, options, stopSoon, &stop);
+      crosscheck(room.scene, room.bvh, std::span(&room.cell, 1), devices, *device, options, stopSoon, &stop);
   EXPECT_GT(last, 0u);
   EXPECT_LE(last, 4096u);
   EXPECT_EQ(report.kinds[0].rays, last);

@@ -42,12 +42,12 @@ struct Cloud {
 
 CrosscheckReport compare(const Cloud& cloud, Device& other, uint32_t keep) {
   const auto cpu = makeCpuDevice(cloud.scene, cloud.bvh, {});
-  Device* const devices[] = {cpu.get(), &other};
+  Tracer* const devices[] = {cpu.get(), &other};
   CrosscheckOptions options;
   options.rays = 500;
   options.kinds = {RayKind::kRandom, RayKind::kVertex};
   options.keep_disagreements = keep;
-  return crosscheck(cloud.scene, cloud.bvh, std::span(&cloud.cell, 1), devices, options);
+  return crosscheck(cloud.scene, cloud.bvh, std::span(&cloud.cell, 1), devices, *cpu, options);
 }
 
 TEST(Reproduce, ACrosscheckKeepsTheFirstDisagreementsAndCountsAll) {
@@ -76,7 +76,7 @@ TEST(Reproduce, FewTrianglesAroundTheRayAreEnough) {
   for (const CheckedRay& ray : report.disagreements.rays) {
     // On the part, the wrong device passes what has an odd id in the whole.
     std::vector<uint32_t> ids;
-    const auto maker = [&](size_t d, const Scene& part, const Bvh& tree) -> std::unique_ptr<Device> {
+    const auto maker = [&](size_t d, const Scene& part, const Bvh& tree) -> std::unique_ptr<Tracer> {
       if (d == 0) return makeCpuDevice(part, tree, {});
       ids.clear();
       for (const glm::uvec3& t : part.triangles) {

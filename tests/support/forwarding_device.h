@@ -22,10 +22,7 @@ class ForwardingDevice : public Device {
   }
   void traceReverse(uint32_t first, uint32_t count) override { device_->traceReverse(first, count); }
   void dropDiscontinuities() override { device_->dropDiscontinuities(); }
-  std::string whyNoRaster() const override { return device_->whyNoRaster(); }
-  void rasterize(std::span<const ViewFrame> hemicube, uint32_t resolution, float near_distance) override {
-    device_->rasterize(hemicube, resolution, near_distance);
-  }
+  HemicubeDrawer& drawer() override { return device_->drawer(); }
   uint32_t collect(uint32_t stage) override { return device_->collect(stage); }
   void insertContained(std::span<const uint32_t> triangles) override { device_->insertContained(triangles); }
   uint64_t countMissing(const RandomSegment& segment, uvec4 shifts) override {

@@ -1,7 +1,9 @@
 #pragma once
 #include <memory>
 
+#include "bvh/bvh.h"
 #include "core/device/device.h"
+#include "core/scene/scene.h"
 
 namespace sightline {
 

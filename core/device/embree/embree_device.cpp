@@ -1,5 +1,7 @@
 #include "core/device/embree/embree_device.h"
 
+#include "core/base/error.h"
+
 #ifdef SL_HAVE_EMBREE
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -31,9 +33,9 @@ void rejectOrigin(const RTCFilterFunctionNArguments* arguments) {
   if (!(RTCRayN_tfar(arguments->ray, arguments->N, 0) > 0)) arguments->valid[0] = 0;
 }
 
-class EmbreeDevice final : public TraceOnlyDevice {
+class EmbreeTracer final : public Tracer {
  public:
-  explicit EmbreeDevice(const Scene& scene)
+  explicit EmbreeTracer(const Scene& scene)
       : library_(rtcNewDevice(nullptr)), scene_(rtcNewScene(library_.get())) {
     const EmbreeGeometry mesh(rtcNewGeometry(library_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     copy(mesh.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, scene.positions);
@@ -52,6 +54,17 @@ class EmbreeDevice final : public TraceOnlyDevice {
     tbb::parallel_for(size_t(0), (rays.size() + kChunk - 1) / kChunk, [&](size_t chunk) {
       for (size_t i = chunk * kChunk; i < std::min(rays.size(), (chunk + 1) * kChunk); ++i) {
         hits[i] = hasDirection(rays[i]) ? trace(rays[i]) : Hit{0, kNoTriangle};
+      }
+    });
+    check("trace");
+  }
+
+  void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
+                  std::span<uint32_t> triangles) override {
+    tbb::parallel_for(size_t(0), views.size() * resolution, [&](size_t row) {
+      for (uint32_t x = 0; x < resolution; ++x) {
+        const auto y = static_cast<uint32_t>(row % resolution);
+        triangles[row * resolution + x] = trace(viewRay(views[row / resolution], x, y, resolution)).triangle;
       }
     });
     check("trace");
@@ -107,8 +120,8 @@ DeviceInfo embreeDeviceInfo() {
   return info;
 }
 
-std::unique_ptr<Device> makeEmbreeDevice(const Scene& scene) {
-  return std::make_unique<EmbreeDevice>(scene);
+std::unique_ptr<Tracer> makeEmbreeTracer(const Scene& scene) {
+  return std::make_unique<EmbreeTracer>(scene);
 }
 
 }  // namespace sightline
@@ -125,7 +138,7 @@ DeviceInfo embreeDeviceInfo() {
   return info;
 }
 
-std::unique_ptr<Device> makeEmbreeDevice(const Scene&) {
+std::unique_ptr<Tracer> makeEmbreeTracer(const Scene&) {
   requireEmbree();
   return nullptr;
 }
@@ -134,7 +147,8 @@ std::unique_ptr<Device> makeEmbreeDevice(const Scene&) {
 
 #endif
 
-void sightline::requireEmbree() {
-  const std::string unusable = embreeDeviceInfo().unusable;
-  if (!unusable.empty()) throw Error("device \"embree\" cannot be used: " + unusable);
+sightline::DeviceInfo sightline::requireEmbree() {
+  DeviceInfo info = embreeDeviceInfo();
+  if (!info.unusable.empty()) throw Error("device \"embree\" cannot be used: " + info.unusable);
+  return info;
 }

@@ -1,7 +1,8 @@
 #pragma once
 #include <memory>
 
-#include "core/device/trace_only_device.h"
+#include "core/scene/scene.h"
+#include "core/trace/tracer.h"
 
 namespace sightline {
 
@@ -9,11 +10,11 @@ namespace sightline {
 /// it.
 DeviceInfo embreeDeviceInfo();
 
-/// Throws Error where it is unusable.
-void requireEmbree();
+/// The same. Throws Error where it is unusable.
+DeviceInfo requireEmbree();
 
 /// Traces by Embree in its robust mode, single rays, on all threads. Which of equally near triangles it names
 /// is its own choice. Throws Error.
-std::unique_ptr<Device> makeEmbreeDevice(const Scene& scene);
+std::unique_ptr<Tracer> makeEmbreeTracer(const Scene& scene);
 
 }  // namespace sightline

@@ -30,7 +30,11 @@ class NaiveDevice final : public Device {
  public:
   NaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) : inner_(std::move(inner)), scene_(scene) {}
 
-  DeviceInfo info() const override { return inner_->info(); }
+  DeviceInfo info() const override {
+    DeviceInfo info = inner_->info();
+    info.naive = true;
+    return info;
+  }
 
   void beginCell(std::span<const Face> faces, const StageParams& params) override {
     faces_.assign(faces.begin(), faces.end());
@@ -208,10 +212,6 @@ class NaiveDevice final : public Device {
 
 std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) {
   return std::make_unique<NaiveDevice>(std::move(inner), scene);
-}
-
-bool isNaiveDevice(const Device& device) {
-  return dynamic_cast<const NaiveDevice*>(&device) != nullptr;
 }
 
 }  // namespace sightline

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "core/device/device.h"
+#include "core/scene/scene.h"
 
 namespace sightline {
 
@@ -11,8 +12,5 @@ namespace sightline {
 /// with the same witnesses, by gvs too: what `inner` itself must find of its own hits. scene: on `inner`,
 /// outlives the device.
 std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene);
-
-/// Whether makeNaiveDevice made the device.
-bool isNaiveDevice(const Device& device);
 
 }  // namespace sightline

@@ -2,7 +2,9 @@
 #include <memory>
 #include <string>
 
+#include "bvh/bvh.h"
 #include "core/device/device.h"
+#include "core/scene/scene.h"
 
 namespace sightline {
 

@@ -12,16 +12,14 @@ namespace sightline {
 /// was built without. Loads drivers, which may take a second.
 std::vector<DeviceInfo> listDevices();
 
-/// Throws Error that lists what there is if `name` selects no device that can run here: at once, before the
-/// work that a tree takes.
-void requireDevice(const std::string& name);
-
-/// Whose intersection test decides what rays hit on the device that `name` selects: empty for that of
-/// core/shared, whose sets are the same on every device; else (vulkan) the device's name and its driver's
-/// version. Throws Error as requireDevice, where it must look at the device.
-std::string intersectorOf(const std::string& name);
+/// What `name` selects. Throws Error that lists what there is if that is no device that can run here: at
+/// once, before the work that a tree takes.
+DeviceInfo requireDevice(const std::string& name);
 
 /// Whether the name could be one: it is of a kind above.
 bool isDeviceName(const std::string& name);
+
+/// Why a device of that name does not bake, in one line; empty: it does.
+std::string whyNoBakes(const std::string& name);
 
 }  // namespace sightline

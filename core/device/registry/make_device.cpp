@@ -26,39 +26,23 @@ struct Kind {
   const char* name;
   const char* left_out;  ///< why this program has none; null: it has, and the rest is not null
   std::vector<DeviceInfo> (*list)();
-  void (*require)(const std::string& selector);  ///< throws Error unless it selects a usable one
-  std::string (*intersector)(const std::string& selector);
+  DeviceInfo (*require)(const std::string& selector);  ///< throws Error unless it selects a usable one
   std::unique_ptr<Device> (*make)(const std::string&, const Scene&, const Bvh&, const DeviceOptions&);
 };
 
-#ifdef SL_HAVE_OPENCL
-/// That of core/shared, as on the processor.
-std::string sharedIntersector(const std::string&) {
-  return {};
-}
-#endif
-
-#ifdef SL_HAVE_VULKAN
-void requireVulkanDevice(const std::string& selector) {
-  selectVulkanDevice(selector);
-}
-
-std::string vulkanIntersector(const std::string& selector) {
-  const DeviceInfo info = selectVulkanDevice(selector).info;
-  return info.name + ", " + info.driver;
-}
-#endif
+constexpr const char* kEmbree = "embree";
 
 constexpr Kind kKinds[] = {
 #ifdef SL_HAVE_OPENCL
-    {"opencl", nullptr, listOpenClDevices, requireOpenClDevice, sharedIntersector, makeOpenClDevice},
+    {"opencl", nullptr, listOpenClDevices, requireOpenClDevice, makeOpenClDevice},
 #else
-    {"opencl", "built without OpenCL (SL_WITH_OPENCL=OFF)", nullptr, nullptr, nullptr, nullptr},
+    {"opencl", "built without OpenCL (SL_WITH_OPENCL=OFF)", nullptr, nullptr, nullptr},
 #endif
 #ifdef SL_HAVE_VULKAN
-    {"vulkan", nullptr, listVulkanDevices, requireVulkanDevice, vulkanIntersector, makeVulkanDevice},
+    {"vulkan", nullptr, listVulkanDevices,
+     [](const std::string& name) { return selectVulkanDevice(name).info; }, makeVulkanDevice},
 #else
-    {"vulkan", "built without Vulkan (SL_WITH_VULKAN=OFF)", nullptr, nullptr, nullptr, nullptr},
+    {"vulkan", "built without Vulkan (SL_WITH_VULKAN=OFF)", nullptr, nullptr, nullptr},
 #endif
 };
 
@@ -102,36 +86,39 @@ std::vector<DeviceInfo> listDevices() {
 }
 
 bool isDeviceName(const std::string& name) {
-  return name == "cpu" || name == "embree" || kindOf(name) != nullptr;
+  return name == "cpu" || name == kEmbree || kindOf(name) != nullptr;
 }
 
-void requireDevice(const std::string& name) {
+DeviceInfo requireDevice(const std::string& name) {
   if (const Kind* kind = kindOf(name)) {
     requireKind(*kind, name);
-    kind->require(name);
-  } else if (name == "embree") {
-    requireEmbree();
-  } else if (name != "cpu") {
-    throwUnknown(name);
+    return kind->require(name);
   }
+  if (name == kEmbree) return requireEmbree();
+  if (name == "cpu") return cpuDeviceInfo();
+  throwUnknown(name);
 }
 
-std::string intersectorOf(const std::string& name) {
-  const Kind* kind = kindOf(name);
-  if (kind == nullptr) return {};
-  requireKind(*kind, name);
-  return kind->intersector(name);
+std::string whyNoBakes(const std::string& name) {
+  return name == kEmbree ? "embree traces rays for crosscheck and trace only; take cpu, opencl or vulkan"
+                         : "";
 }
 
 std::unique_ptr<Device> makeDevice(const std::string& name, const Scene& scene, const Bvh& bvh,
                                    const DeviceOptions& options) {
   if (name == "cpu") return makeCpuDevice(scene, bvh, options);
-  if (name == "embree") return makeEmbreeDevice(scene);
   if (const Kind* kind = kindOf(name)) {
     requireKind(*kind, name);
     return kind->make(name, scene, bvh, options);
   }
+  if (const std::string why = whyNoBakes(name); !why.empty()) throw Error(why, kExitUsage);
   throwUnknown(name);
+}
+
+std::unique_ptr<Tracer> makeTracer(const std::string& name, const Scene& scene, const Bvh& bvh,
+                                   const DeviceOptions& options) {
+  if (name == kEmbree) return makeEmbreeTracer(scene);
+  return makeDevice(name, scene, bvh, options);
 }
 
 }  // namespace sightline

@@ -26,7 +26,7 @@ constexpr uint64_t kReadbackBytes = 64u << 20;
 /// Work items of a group with ray queries, if the options name no other.
 constexpr uint32_t kGroup = 64;
 
-class VulkanDevice final : public Device {
+class VulkanDevice final : public Device, private HemicubeDrawer {
  public:
   VulkanDevice(const std::string& selector, const Scene& scene, const Bvh& bvh, const DeviceOptions& options)
       : context_(selector, options.ray_queries, options.memory_budget_bytes),
@@ -121,7 +121,7 @@ class VulkanDevice final : public Device {
     traceUntilItFits([&] { runner_.run(tracing(reverse_, "trace_reverse"), total); });
   }
 
-  std::string whyNoRaster() const override { return context_.whyNoRaster(); }
+  HemicubeDrawer& drawer() override { return *this; }
 
   void rasterize(std::span<const ViewFrame> hemicube, uint32_t resolution, float near_distance) override {
     if (!raster_ || raster_->resolution() != resolution) {
