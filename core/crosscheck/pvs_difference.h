@@ -8,6 +8,7 @@
 #include "core/device/device.h"
 #include "core/gvs/bake_cell.h"
 #include "core/pvs/pvs.h"
+#include "core/scene/scene.h"
 #include "core/verify/cell_sight.h"
 
 namespace sightline {
