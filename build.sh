@@ -31,6 +31,7 @@ usage: ./build.sh demo [--small]   build, bake a generated city, draw pictures o
 Both first install the Debian packages that are missing, by apt-get as root or through sudo, and build into build/.
 --small            a city of a twelfth of the triangles, fewer rays: for a slow machine, or CI
 SIGHTLINE_JOBS=N   compilers to run at once (default: one a core, and one for each 1.5 GiB of free memory at most)
+SL_WERROR=ON       a warning of the compiler fails the build
 SIGHTLINE_DEVICE   what the demo bakes on (default: opencl; build/sightline devices lists what there is)
 TEXT
 }
@@ -165,7 +166,7 @@ buildTarget() {
     fresh=(--fresh)  # the folder was moved since
   fi
   say "building into $build"
-  cmake --preset release "${fresh[@]}" >"$build/configure.log" ||
+  cmake --preset release -DSL_WERROR="${SL_WERROR:-OFF}" "${fresh[@]}" >"$build/configure.log" ||
     fail "cmake could not configure (log: $build/configure.log)"
   cmake --build --preset release -j "$(compilersAtOnce)" --target "$1"
 }

@@ -4,9 +4,9 @@
 
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
+#include "core/cell/cell_problem.h"
 #include "core/io/file_io.h"
 #include "core/pvs/param_table.h"
-#include "core/scene/cell_problem.h"
 
 namespace sightline {
 namespace {
@@ -137,8 +137,7 @@ void Bake::goOnAfterPart(bool overwrite) {
   head_.device = left.pvs.device;
 }
 
-bool Bake::run(const std::string& device, const CellBaker& baker, const BakeEvents& events,
-               const std::atomic<bool>* stop) {
+bool Bake::run(const std::string& device, const CellBaker& baker, const BakeEvents& events) {
   if (complete_) return true;
   if (finished_.empty()) head_.device = device;
   if (!begun_) {
@@ -147,7 +146,7 @@ bool Bake::run(const std::string& device, const CellBaker& baker, const BakeEven
   }
   while (finished_.size() < head_.planned.size()) {
     const auto index = uint32_t(finished_.size());
-    if (stop && *stop) return false;
+    if (events.stop && *events.stop) return false;
     try {
       CellPvs pvs = baker(head_.planned[index], index, [&](const BakeProgress& progress) {
         if (events.progress) events.progress(index, progress);

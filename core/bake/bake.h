@@ -1,5 +1,4 @@
 #pragma once
-#include <atomic>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -7,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/bake/bake_events.h"
 #include "core/gvs/bake_cell.h"
 #include "core/pvs/cell_summary.h"
 #include "core/pvs/pvs_writer.h"
@@ -15,13 +15,6 @@ namespace sightline {
 
 /// Bakes one cell: bakeCell on a device, or a fake in tests. Throws Error, Interrupted.
 using CellBaker = std::function<CellPvs(const ViewCell& cell, uint32_t index, const ProgressCallback&)>;
-
-/// Told about a bake; any of them may be empty.
-struct BakeEvents {
-  std::function<void(uint32_t index, const BakeProgress&)> progress;
-  /// The cell is on the disk.
-  std::function<void(uint32_t index, const CellPvs&)> cell_done;
-};
 
 /// How two bakes' inputs differ, for people: "scene (city.obj, 12 triangles, not room.obj, 10 triangles)",
 /// "n_rand (1000, not 500)", ... Empty: a bake of one goes on with the other. The algorithm's revision and
@@ -53,10 +46,9 @@ class Bake {
   const PvsFile& head() const { return head_; }
   const std::filesystem::path& partFile() const { return part_; }
 
-  /// Bakes what is missing and completes the file. False if *stop became true: what is finished is kept.
-  /// device: on which the baker bakes, for the file.
-  bool run(const std::string& device, const CellBaker& baker, const BakeEvents& events = {},
-           const std::atomic<bool>* stop = nullptr);
+  /// Bakes what is missing and completes the file. False if *events.stop became true: what is finished is
+  /// kept. device: on which the baker bakes, for the file. events.grown is the baker's.
+  bool run(const std::string& device, const CellBaker& baker, const BakeEvents& events = {});
 
  private:
   bool openComplete();

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <exception>
 
+#include "core/api/bake_steps.h"
+#include "core/api/session_parts.h"
 #include "core/bake/bake.h"
 #include "core/bake/bake_page.h"
 #include "core/bake/cell_table.h"
@@ -17,11 +19,9 @@
 #include "core/cli/commands.h"
 #include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
-#include "core/device/naive/naive_device.h"
-#include "core/device/registry/make_device.h"
+#include "core/device/registry/device_names.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
-#include "core/gvs/algorithm_revision.h"
 #include "core/io/file_io.h"
 #include "core/picture/cell_pictures.h"
 #include "core/trace/cpu_tracer.h"
@@ -32,20 +32,6 @@ namespace {
 void say(const std::string& line) {
   std::fputs((line + "\n").c_str(), stdout);
   std::fflush(stdout);
-}
-
-/// The inputs, as the head of the file that is to be made.
-PvsFile inputsOf(const BakeOptions& options, const Scene& scene) {
-  PvsFile inputs;
-  inputs.algorithm = kAlgorithmRevision;
-  inputs.intersector = intersectorOf(requireDevice(options.device));
-  inputs.scene_hash = hashScene(scene);
-  inputs.triangle_count = uint32_t(scene.triangles.size());
-  inputs.scene_name = options.scene.filename().string();
-  inputs.params = options.params;
-  inputs.has_witnesses = options.witnesses;
-  inputs.planned = loadCells(options.cells);
-  return inputs;
 }
 
 BakeReport startReport(const BakeOptions& options, const Scene& scene, const Bake& bake) {
@@ -67,28 +53,22 @@ void sayKept(const Bake& bake, const char* why) {
                   bake.finished().size(), bake.head().planned.size(), bake.partFile().string()));
 }
 
-/// The tree and the device that refers to it.
-struct TreeAndDevice {
-  Bvh bvh;
-  std::unique_ptr<Device> device;
-};
+SessionOptions sessionOptions(const BakeOptions& options) {
+  return {.device = options.device,
+          .device_options = options.device_options,
+          .spatial_splits = options.spatial_splits,
+          .scene_name = options.scene.filename().string()};
+}
 
-/// Fills `tracer` in place: the device refers to its tree.
-void openTracer(TreeAndDevice& tracer, const BakeOptions& options, const Scene& scene, BakeReport& report) {
+/// Opens the device that bakes, and says what it is.
+void openDevice(const BakeOptions& options, Session& session, BakeReport& report) {
   requireDevice(options.device);
-  BvhConfig config;
-  config.spatial_splits = options.spatial_splits;
-  config.threads = options.device_options.threads;
-  tracer.bvh = buildBvh(scene.positions, scene.triangles, config);
-  report.tree = summarize(tracer.bvh);
+  report.tree = summarize(session.parts().tree());
   say(fmt::format("tree: built in {}, SAH cost {:.1f}, depth {}", shortDuration(report.tree->build_seconds),
                   report.tree->sah_cost, report.tree->depth));
-  tracer.device = makeDevice(options.device, scene, tracer.bvh, options.device_options);
-  if (options.params.method == Method::kNaive) {
-    tracer.device = makeNaiveDevice(std::move(tracer.device), scene);
-  }
-  report.device = tracer.device->info();
-  report.set = tracer.device->counters().hash_set ? "hash" : "array";
+  Device& device = session.parts().device(options.params.method);
+  report.device = device.info();
+  report.set = device.counters().hash_set ? "hash" : "array";
   say(fmt::format("device: {}, {}", report.device->id, report.device->name));
   if (const DeviceInfo& info = *report.device; info.driver_tree_parts > 0) {
     say(fmt::format("driver's tree: built in {}, {:.1f} MiB in {}",
@@ -97,18 +77,19 @@ void openTracer(TreeAndDevice& tracer, const BakeOptions& options, const Scene& 
   }
 }
 
-NearestHits nearestHits(Tracer& device) {
-  return [&device](std::span<const Ray> rays, std::span<Hit> hits) { device.traceRays(rays, hits); };
+NearestHits nearestHits(Session& session) {
+  return [&session](std::span<const Ray> rays, std::span<Hit> hits) { session.traceRays(rays, hits); };
 }
 
-/// Warnings of the planned cells, by the device, or without one (of a complete bake) by a tree made for it.
-std::vector<std::vector<CellWarning>> checkPlanned(const BakeOptions& options, const Scene& scene,
-                                                   const Bake& bake, const TreeAndDevice& tracer) {
+/// Warnings of the planned cells, by the device if it is open, else (of a complete bake) on the host.
+std::vector<std::vector<CellWarning>> checkPlanned(const BakeOptions& options, Session& session,
+                                                   const Bake& bake) {
   const std::vector<ViewCell>& cells = bake.head().planned;
-  if (tracer.device) {
-    return checkCells(scene, tracer.bvh, cells, options.free_side, nearestHits(*tracer.device));
+  const Scene& scene = session.scene();
+  const Bvh& bvh = session.parts().tree();
+  if (session.parts().isOpen()) {
+    return checkCells(scene, bvh, cells, options.free_side, nearestHits(session));
   }
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   const CpuTracer cpu(scene, bvh);
   return checkCells(scene, bvh, cells, options.free_side,
                     [&cpu](std::span<const Ray> rays, std::span<Hit> hits) {
@@ -117,9 +98,9 @@ std::vector<std::vector<CellWarning>> checkPlanned(const BakeOptions& options, c
 }
 
 /// Says what can be said of the cells before the bake. Throws Error with --strict-cells.
-void warnOfCells(const BakeOptions& options, const Scene& scene, const Bake& bake,
-                 const TreeAndDevice& tracer, BakeReport& report, CellWarningPrinter& printer) {
-  report.warnings = checkPlanned(options, scene, bake, tracer);
+void warnOfCells(const BakeOptions& options, Session& session, const Bake& bake, BakeReport& report,
+                 CellWarningPrinter& printer) {
+  report.warnings = checkPlanned(options, session, bake);
   std::vector<WarnedCell> cells;
   for (size_t i = 0; i < report.warnings.size(); ++i) {
     cells.push_back({bake.head().planned[i].name, report.warnings[i]});
@@ -130,8 +111,7 @@ void warnOfCells(const BakeOptions& options, const Scene& scene, const Bake& bak
 }
 
 /// Bakes what is missing, with progress, and keeps how the sets grew for the page. Returns the exit code.
-int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Bake& bake, BakePage& page,
-              CellWarningPrinter& warnings) {
+int bakeCells(Session& session, Bake& bake, BakePage& page, CellWarningPrinter& warnings) {
   if (!bake.partProblem().empty()) {
     say(fmt::format("{}: cut off or damaged after {} ({}); the rest is baked again", bake.partFile().string(),
                     counted(bake.resumed(), "whole cell"), bake.partProblem()));
@@ -142,17 +122,14 @@ int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Ba
   }
   StopSignal stop;
   ProgressPrinter printer(stdout, terminalColumns(stdout), bake.head().planned, bake.finished());
-  const auto baker = [&](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
-    BakeTrace trace;
-    CellPvs pvs = bakeCell(device, scene, cell, index, options.params, {progress, stop.flag(), &trace});
+  BakeEvents events;
+  events.stop = stop.flag();
+  events.progress = [&](uint32_t index, const BakeProgress& progress) { printer.progress(index, progress); };
+  events.grown = [&](uint32_t index, BakeTrace trace) {
     page.curves.resize(index);  // empty for cells of an earlier run
     page.curves.push_back(std::move(trace.curve));
-    if (!options.witnesses) pvs.witnesses.clear();
-    return pvs;
   };
-  BakeEvents events;
-  events.progress = [&](uint32_t index, const BakeProgress& progress) { printer.progress(index, progress); };
-  const uint64_t triangles = scene.triangles.size() - scene.degenerate_triangles;
+  const uint64_t triangles = session.scene().triangles.size() - session.scene().degenerate_triangles;
   events.cell_done = [&](uint32_t index, const CellPvs& pvs) {
     printer.cellDone(index, summarize(pvs));
     if (const auto warning = checkSetSize(pvs.triangles.size(), triangles)) {
@@ -160,8 +137,7 @@ int bakeCells(const BakeOptions& options, const Scene& scene, Device& device, Ba
     }
   };
   try {
-    const DeviceInfo info = device.info();
-    if (bake.run(info.id + ", " + info.name, baker, events, stop.flag())) return 0;
+    if (runBake(session, bake, events)) return 0;
   } catch (...) {
     printer.breakLine();
     sayKept(bake, "failed");
@@ -178,8 +154,8 @@ std::vector<uint8_t> readPicture(const std::filesystem::path& file) {
 }
 
 /// Draws the pictures, and adds them to the page if one is written. Returns the exit code.
-int drawCells(const BakeOptions& options, const Scene& scene, Tracer& device, BakePage& page) {
-  const TraceRays trace = nearestHits(device);
+int drawCells(const BakeOptions& options, Session& session, BakePage& page) {
+  const TraceRays trace = nearestHits(session);
   const PvsFile pvs = loadPvs(options.out);
   const StopSignal stop;
   for (uint32_t i = 0; i < pvs.cells.size(); ++i) {
@@ -187,7 +163,7 @@ int drawCells(const BakeOptions& options, const Scene& scene, Tracer& device, Ba
       say(fmt::format("stopped: pictures of {} of {} cells are drawn", i, pvs.cells.size()));
       break;
     }
-    const double missing = saveCellPictures(trace, scene, pvs.cells[i], i, options.pictures);
+    const double missing = saveCellPictures(trace, session.scene(), pvs.cells[i], i, options.pictures);
     const std::string& name = pvs.cells[i].cell.name;
     const std::string file = (options.pictures / pictureName(name, i)).string();
     say(fmt::format("{}: {:.2g} of the pixels from inside show a missing triangle", file, missing));
@@ -261,24 +237,26 @@ void runBake(const BakeOptions& options) {
                   std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
   const TextOutputs outputs(reports);
-  const Scene scene = loadScene(options.scene, {.repair = options.repair});
-  Bake bake(inputsOf(options, scene), options.out, options.overwrite);
+  Session session(loadScene(options.scene, {.repair = options.repair}), sessionOptions(options));
+  const Scene& scene = session.scene();
+  Bake bake(bakeInputs(session, loadCells(options.cells), options.params,
+                       options.witnesses ? Witnesses::kKeep : Witnesses::kDrop),
+            options.out, options.overwrite);
   say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangles.size(),
                   counted(scene.objects.size(), "object"), counted(bake.head().planned.size(), "cell")));
   BakeReport report = startReport(options, scene, bake);
 
   int exit_code = 0;
   BakePage page;
-  TreeAndDevice tracer;
   if (bake.complete()) {
     say(fmt::format("{}: already complete, nothing to bake (--overwrite bakes again)", options.out.string()));
   }
   if (!bake.complete() || !options.pictures.empty()) {
-    openTracer(tracer, options, scene, report);
+    openDevice(options, session, report);
   }
   CellWarningPrinter printer;
-  warnOfCells(options, scene, bake, tracer, report, printer);
-  if (!bake.complete()) exit_code = bakeCells(options, scene, *tracer.device, bake, page, printer);
+  warnOfCells(options, session, bake, report, printer);
+  if (!bake.complete()) exit_code = bakeCells(session, bake, page, printer);
   printer.end();
 
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -288,7 +266,7 @@ void runBake(const BakeOptions& options) {
   Steps steps;
   if (!options.report.empty()) steps.run([&] { outputs.save(reportJson(report), options.report); });
   if (exit_code == 0 && !options.pictures.empty()) {
-    steps.run([&] { exit_code = drawCells(options, scene, *tracer.device, page); });
+    steps.run([&] { exit_code = drawCells(options, session, page); });
   }
   writePage(options, report, outputs, page, steps);
   steps.end();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/api/session_parts.h"
 #include "core/bake/status_line.h"
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
@@ -17,8 +18,6 @@
 #include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
 #include "core/compare/comparison_report.h"
-#include "core/device/naive/naive_device.h"
-#include "core/device/registry/make_device.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
@@ -34,28 +33,6 @@ struct CompareCommand {
   ViewOptions views;
   CompareOptions options;
   bool spatial_splits = false, repair = false;
-};
-
-/// One device a method: the methods that work on the same kind share one.
-class Devices {
- public:
-  Devices(const CompareCommand& command, const Scene& scene, const Bvh& bvh) {
-    owned_.push_back(makeDevice(command.device, scene, bvh, command.device_options));
-    for (const Method method : command.options.methods) {
-      if (method == Method::kNaive) {
-        owned_.push_back(
-            makeNaiveDevice(makeDevice(command.device, scene, bvh, command.device_options), scene));
-      }
-      by_method_.push_back(method == Method::kNaive ? owned_.back().get() : owned_.front().get());
-    }
-  }
-
-  std::span<Device* const> byMethod() const { return by_method_; }
-  const Device& main() const { return *owned_.front(); }
-
- private:
-  std::vector<std::unique_ptr<Device>> owned_;
-  std::vector<Device*> by_method_;
 };
 
 CompareEvents statusEvents(StatusLine& status, const std::string& place, const StopSignal& stop) {
@@ -79,19 +56,18 @@ CompareEvents statusEvents(StatusLine& status, const std::string& place, const S
 }
 
 /// Compares on all cells; false if it was stopped. What is done by then is in the report.
-bool compareCells(const Scene& scene, const std::vector<ViewCell>& cells, const Devices& devices,
+bool compareCells(const Scene& scene, const std::vector<ViewCell>& cells, std::span<Device* const> by_method,
                   const StopSignal& stop, ComparisonReport& report) {
   StatusLine status;
   try {
     // Where seconds count, the first bake must not pay for what the driver does once.
     if (report.options.params.max_seconds > 0) {
-      warmUp(devices.byMethod(), scene, cells.front(), report.options,
-             statusEvents(status, "warming up", stop));
+      warmUp(by_method, scene, cells.front(), report.options, statusEvents(status, "warming up", stop));
     }
     for (uint32_t c = 0; c < cells.size(); ++c) {
       const std::string place = fmt::format("{}/{}", c + 1, cells.size());
-      report.cells.push_back(compareCell(devices.byMethod(), scene, cells[c], c, report.options,
-                                         statusEvents(status, place, stop)));
+      report.cells.push_back(
+          compareCell(by_method, scene, cells[c], c, report.options, statusEvents(status, place, stop)));
       status.end();
       fmt::print("{} {} done\n", place, cells[c].name);
       std::fflush(stdout);
@@ -125,19 +101,20 @@ void run(const CompareCommand& command) {
   const std::array reports = {command.report, command.html, command.csv};
   requireSeparate(reports, std::array{command.scene, command.cells});
   const TextOutputs outputs(reports);
-  const Scene scene = loadScene(command.scene, {.repair = command.repair});
+  Session session(loadScene(command.scene, {.repair = command.repair}),
+                  {.device = command.device,
+                   .device_options = command.device_options,
+                   .spatial_splits = command.spatial_splits});
+  const Scene& scene = session.scene();
   const std::vector<ViewCell> cells = loadCells(command.cells);
-  requireDevice(command.device);
-  const Bvh bvh =
-      buildBvh(scene.positions, scene.triangles,
-               {.spatial_splits = command.spatial_splits, .threads = command.device_options.threads});
-  const Devices devices(command, scene, bvh);
+  std::vector<Device*> by_method;
+  for (const Method method : command.options.methods) by_method.push_back(&session.parts().device(method));
 
   ComparisonReport report;
   report.version = SL_VERSION;
   report.command = commandLine();
   report.scene = summarize(scene, command.scene.filename().string(), hashScene(scene));
-  report.device = devices.main().info();
+  report.device = session.device();
   report.spatial_splits = command.spatial_splits;
   report.options = command.options;
   report.options.measure = chooseViews(command.views, report.device.on_cpu, command.options.measure);
@@ -146,7 +123,7 @@ void run(const CompareCommand& command) {
              report.options.measure.views, report.options.measure.resolution,
              report.options.measure.resolution);
   StopSignal stop;
-  report.complete = compareCells(scene, cells, devices, stop, report);
+  report.complete = compareCells(scene, cells, by_method, stop, report);
   saveReports(command, report, outputs);
   if (!report.complete) throw ExitCode{stop.exitCode()};
 }

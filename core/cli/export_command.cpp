@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/bake/require_scene.h"
 #include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/name_checks.h"

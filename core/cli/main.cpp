@@ -13,7 +13,7 @@
 #include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/help_format.h"
-#include "core/cli/pocl_cache.h"
+#include "core/cli/kernel_cache.h"
 #include "core/cli/usage.h"
 
 namespace sightline {
@@ -27,6 +27,13 @@ int fail(std::string line, int exit_code) {
   }
   std::fprintf(stderr, "sightline: %s\n", line.c_str());
   return exit_code;
+}
+
+/// A command that this program was built without: says so, whatever words follow it.
+[[maybe_unused]] void addLeftOut(CLI::App& app, const std::string& name, const std::string& why) {
+  CLI::App* command = app.add_subcommand(name, why);
+  command->allow_extras();
+  command->callback([name, why] { throw Error(name + ": this program was " + why, kExitUsage); });
 }
 
 int runCommand(CLI::App& app, int argc, char** argv) {
@@ -66,14 +73,16 @@ int main(int argc, char** argv) {
   using namespace sightline;
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not end a bake
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of the write
-  keepPoclCacheInUsersFolder();
+  keepKernelsInUsersFolder();
   CLI::App app("Potentially visible sets of scenes by guided visibility sampling (GVS++)", "sightline");
   app.set_version_flag("--version", "sightline " SL_VERSION);
   app.require_subcommand(1);
   app.formatter(std::make_shared<HelpFormat>());
 #define SL_COMMAND(function) function(app);
+#define SL_COMMAND_LEFT_OUT(name, why) addLeftOut(app, name, why);
 #include "generated/commands.inc"
 #undef SL_COMMAND
+#undef SL_COMMAND_LEFT_OUT
   app.footer("sightline help COMMAND says all about one of them.");  // now: a command would take it over
   for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) command->group("Commands");
   refuseSlips(app);

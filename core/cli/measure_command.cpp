@@ -8,6 +8,8 @@
 #include <limits>
 #include <memory>
 
+#include "core/api/session_parts.h"
+#include "core/bake/require_scene.h"
 #include "core/bake/status_line.h"
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
@@ -20,7 +22,6 @@
 #include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
 #include "core/cli/view_options.h"
-#include "core/device/registry/make_device.h"
 #include "core/formats/load_scene.h"
 #include "core/gvs/bake_cell.h"
 #include "core/io/file_io.h"
@@ -186,17 +187,16 @@ void run(const MeasureCommand& command) {
   requireSeparate(reports, inputs);
   const TextOutputs outputs(reports);
   if (!command.pictures.empty()) makeFolder(command.pictures);
-  const Scene scene = loadScene(command.scene, {.repair = command.repair});
+  Session session(loadScene(command.scene, {.repair = command.repair}), {.device = command.device});
+  const Scene& scene = session.scene();
   const std::vector<PvsFile> files = loadSets(command, scene);
   const std::vector<uint32_t> cells = cellsToMeasure(command, files.front());
-  requireDevice(command.device);
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
-  const std::unique_ptr<Tracer> tracer = makeTracer(command.device, scene, bvh);
+  Tracer& tracer = session.parts().tracer();
 
   MeasureReport report;
   report.version = SL_VERSION;
   report.scene = summarize(scene, command.scene.filename().string(), files.front().scene_hash);
-  report.device = tracer->info();
+  report.device = tracer.info();
   for (size_t s = 0; s < files.size(); ++s) {
     report.sets.push_back({command.pvs[s].string(), files[s].device, files[s].params, {}});
   }
@@ -205,7 +205,7 @@ void run(const MeasureCommand& command) {
   chooseSize(command, report);
   if (!command.pictures.empty()) removeOldPictures(command, files.front(), cells);
   StopSignal stop;
-  measureAll(command, scene, *tracer, files, cells, stop, report);
+  measureAll(command, scene, tracer, files, cells, stop, report);
   std::fputs(measureTable(report).c_str(), stdout);
   if (!report.complete) {
     fmt::print("stopped: {} of {} cells are measured\n", report.sets.front().cells.size(), cells.size());

@@ -6,13 +6,13 @@
 #include <filesystem>
 #include <memory>
 
-#include "bvh/bvh.h"
+#include "core/api/session.h"
+#include "core/bake/require_scene.h"
 #include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
-#include "core/device/registry/make_device.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
 #include "core/picture/picture.h"
@@ -48,13 +48,12 @@ void draw(const PictureCommand& command) {
   requireSeparate(std::array{command.output}, std::array{command.scene, command.pvs});
   const PvsFile pvs = loadFinishedCells(command.pvs);
   const CellPvs& cell = chooseCell(pvs, command.cell, command.pvs);
-  const Scene scene = loadScene(command.scene, {.repair = command.repair});
+  Session session(loadScene(command.scene, {.repair = command.repair}), {.device = command.device});
+  const Scene& scene = session.scene();
   requireScene(pvs, scene, command.pvs);
-  requireDevice(command.device);
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
-  const std::unique_ptr<Tracer> tracer = makeTracer(command.device, scene, bvh);
+  session.open();
   const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
-    tracer->traceRays(rays, hits);
+    session.traceRays(rays, hits);
   };
 
   const bool inside = command.view == "inside";

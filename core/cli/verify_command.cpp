@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/bake/require_scene.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"

@@ -1,8 +1,8 @@
 #pragma once
 #include <vector>
 
+#include "core/cell/view_cell.h"
 #include "core/scene/scene.h"
-#include "core/scene/view_cell.h"
 
 namespace sightline {
 

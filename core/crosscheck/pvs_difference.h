@@ -9,6 +9,7 @@
 #include "core/gvs/bake_cell.h"
 #include "core/pvs/bake_params.h"
 #include "core/pvs/cell_pvs.h"
+#include "core/scene/scene.h"
 #include "core/verify/cell_sight.h"
 
 namespace sightline {

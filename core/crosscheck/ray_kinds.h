@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/cell/view_cell.h"
 #include "core/device/device.h"
 #include "core/scene/scene.h"
-#include "core/scene/view_cell.h"
 #include "core/shared/reverse.h"
 
 namespace sightline {

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/cell/cell_problem.h"
+#include "core/cell/view_cell.h"
+#include "core/formats/json_text.h"
 #include "core/io/file_io.h"
-#include "core/io/json_text.h"
-#include "core/scene/cell_problem.h"
-#include "core/scene/view_cell.h"
 
 namespace sightline {
 namespace {

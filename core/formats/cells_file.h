@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 
 namespace sightline {
 

@@ -8,7 +8,7 @@
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "core/io/json_object.h"
+#include "core/formats/json_object.h"
 
 namespace sightline {
 namespace {

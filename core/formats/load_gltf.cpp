@@ -11,10 +11,10 @@
 #include "core/formats/gltf_document.h"
 #include "core/formats/gltf_tree.h"
 #include "core/formats/gltf_vertices.h"
+#include "core/formats/json_text.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/loaders.h"
 #include "core/formats/scene_builder.h"
-#include "core/io/json_text.h"
 
 namespace sightline {
 namespace {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <memory>
 
+#include "core/cell/rotation.h"
 #include "core/generate/canyon_terrain.h"
 #include "core/generate/generator_random.h"
 #include "core/generate/rocks.h"
 #include "core/generate/scene_generators.h"
-#include "core/scene/rotation.h"
 
 namespace sightline {
 namespace {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "core/cell/view_cell.h"
 #include "core/generate/scene_parts.h"
-#include "core/scene/view_cell.h"
 
 namespace sightline {
 

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
+#include "core/cell/cell_problem.h"
 #include "core/gvs/error_bound.h"
 #include "core/gvs/exploration_yield.h"
 #include "core/gvs/fill_set.h"
@@ -19,7 +20,6 @@
 #include "core/sampling/hemicube.h"
 #include "core/sampling/make_stage_params.h"
 #include "core/sampling/random_segment.h"
-#include "core/scene/cell_problem.h"
 #include "core/scene/contained.h"
 #include "core/shared/border.h"
 #include "core/shared/reverse.h"

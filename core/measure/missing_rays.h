@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "core/cell/view_cell.h"
 #include "core/measure/ranked_set.h"
-#include "core/scene/view_cell.h"
 #include "core/trace/tracer.h"
 
 namespace sightline {

@@ -6,6 +6,7 @@
 
 #include "core/measure/pixel_error.h"
 #include "core/pvs/cell_pvs.h"
+#include "core/scene/scene.h"
 
 // Pictures of the worst views of a measurement: FOLDER/NNN-NAME-view-V.png (pictureName), of several files
 // that were measured at once FOLDER/NNN-NAME-S-view-V.png, where S is the file's place, from 0.

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/base/parallel_copy.h"
 #include "core/opencl/opencl_devices.h"
+#include "core/trace/parallel_copy.h"
 
 namespace sightline {
 namespace {

@@ -67,7 +67,7 @@ struct ReportChart {
 };
 
 struct ReportPicture {
-  std::vector<uint8_t> png = {};  ///< bytes of a PNG file (encodePng, core/io/png.h)
+  std::vector<uint8_t> png = {};  ///< bytes of a PNG file (encodePng, core/picture/png.h)
   std::string caption = {};
   std::string alt = {};  ///< what one sees, for who does not; empty: the caption
 };

@@ -2,9 +2,9 @@
 #include <span>
 #include <vector>
 
-#include "core/io/png.h"
+#include "core/cell/view_cell.h"
 #include "core/picture/outside_camera.h"
-#include "core/scene/view_cell.h"
+#include "core/picture/png.h"
 
 namespace sightline {
 

@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/io/png.h"
+#include "core/picture/png.h"
 
 namespace sightline {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/io/png.h"
+#include "core/picture/png.h"
 #include "core/pvs/cell_pvs.h"
 #include "core/scene/scene.h"
 

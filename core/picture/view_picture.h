@@ -2,7 +2,7 @@
 #include <cstdint>
 #include <span>
 
-#include "core/io/png.h"
+#include "core/picture/png.h"
 #include "core/scene/scene.h"
 #include "core/shared/view_ray.h"
 

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "bvh/bvh.h"
-#include "core/scene/cell_frame.h"
+#include "core/cell/cell_frame.h"
 #include "core/scene/scene.h"
 
 namespace sightline {

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "core/base/error.h"
+#include "core/cell/rotation.h"
 #include "core/place/clear_box.h"
 #include "core/place/place_cells.h"
 #include "core/scene/contained.h"
-#include "core/scene/rotation.h"
 
 namespace sightline {
 namespace {

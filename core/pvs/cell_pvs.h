@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/pvs/cell_stats.h"
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 #include "core/shared/types.h"
 
 namespace sightline {

@@ -7,7 +7,6 @@
 #include "core/base/error.h"
 #include "core/pvs/bake_params.h"
 #include "core/pvs/cell_pvs.h"
-#include "core/scene/scene.h"
 
 namespace sightline {
 
@@ -44,8 +43,5 @@ PvsFile loadPvs(const std::filesystem::path& file);
 /// Writes to a temporary name beside it, flushes to disk and renames; each pvs.cells with its device. In
 /// pvs.version's stead it writes kPvsVersion. Throws Error.
 void savePvs(const PvsFile& pvs, const std::filesystem::path& file);
-
-/// Throws Error unless `pvs`, read from `file`, was baked of this scene (hash and number of triangles).
-void requireScene(const PvsFile& pvs, const Scene& scene, const std::filesystem::path& file);
 
 }  // namespace sightline

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cell/cell_problem.h"
 #include "core/pvs/param_table.h"
 #include "core/pvs/set_codec.h"
-#include "core/scene/cell_problem.h"
 
 namespace sightline {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/base/splitmix.h"
-#include "core/scene/rotation.h"
+#include "core/cell/rotation.h"
 #include "core/shared/halton.h"
 
 namespace sightline {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 #include "core/shared/view_ray.h"
 
 // Where the pixel error looks from, and where to (thesis 7.1).

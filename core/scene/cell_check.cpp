@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/scene/cell_frame.h"
+#include "core/cell/cell_frame.h"
 #include "core/scene/contained.h"
 #include "core/scene/largest.h"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "bvh/bvh.h"
+#include "core/cell/view_cell.h"
 #include "core/scene/in_solid.h"
 #include "core/scene/scene.h"
-#include "core/scene/view_cell.h"
 #include "core/shared/types.h"
 
 namespace sightline {

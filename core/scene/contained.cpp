@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/cell/cell_contains.h"
+#include "core/cell/cell_frame.h"
 #include "core/scene/box_triangle.h"
-#include "core/scene/cell_frame.h"
 #include "core/scene/leaves_in_box.h"
 #include "core/scene/triangle_area.h"
 
@@ -18,19 +19,6 @@ constexpr size_t kBlock = 1 << 15;
 
 /// Rounding, as a share of coordinates, between a cell's bounds in the world and its corners' places in it.
 constexpr double kSlack = 0x1p-40;
-
-/// How far, along each local axis, the corners of the faces in float lie from those of the exact box.
-glm::dvec3 roundingOfFaces(const ViewCell& cell, const CellFrame& frame) {
-  glm::dvec3 margin(0.0);
-  for (const Face& face : cellFaces(cell)) {
-    for (const glm::vec4& corner : {face.corner, face.corner + face.edge_u, face.corner + face.edge_v,
-                                    face.corner + face.edge_u + face.edge_v}) {
-      const glm::dvec3 local = frame.toLocal(glm::dvec3(corner));
-      margin = glm::max(margin, glm::abs(glm::abs(local) - frame.half_size));
-    }
-  }
-  return margin;
-}
 
 /// The cell as its rays leave it.
 struct RoundedCell {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "bvh/bvh.h"
+#include "core/cell/view_cell.h"
 #include "core/scene/scene.h"
-#include "core/scene/view_cell.h"
 
 namespace sightline {
 

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "core/base/extents.h"
+
 namespace sightline {
 
 /// A named run of triangles, at least one. Names are not empty, valid UTF-8 and without control characters;
@@ -38,14 +40,6 @@ struct Scene {
   std::vector<std::string> warnings;    ///< a line each: what else of the file is not in the scene, or only
                                         ///< roughly
 };
-
-/// Coordinates of scenes and view cells reach so far at most, to either side of 0: products of three
-/// distances, which the intersection test takes, must stay within single precision.
-inline constexpr float kLargestCoordinate = 0x1p40f;
-
-/// No scene's extent and no extent of a view cell (but 0) is below this: smaller ones leave the normal floats
-/// where distances are multiplied.
-inline constexpr float kSmallestExtent = 0x1p-60f;
 
 /// Hash of positions and triangles (XXH3, 64 bit): what a PVS depends on.
 uint64_t hashScene(const Scene& scene);

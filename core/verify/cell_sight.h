@@ -2,9 +2,9 @@
 #include <cstdint>
 #include <string>
 
+#include "core/cell/cell_frame.h"
 #include "core/judge/judge_ray.h"
 #include "core/pvs/cell_pvs.h"
-#include "core/scene/cell_frame.h"
 
 namespace sightline {
 

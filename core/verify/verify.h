@@ -7,6 +7,7 @@
 #include "core/bake/cell_json.h"
 #include "core/judge/ruling.h"
 #include "core/pvs/pvs_file.h"
+#include "core/scene/scene.h"
 #include "core/verify/cell_sight.h"
 
 namespace sightline {

@@ -4,13 +4,13 @@
 #include <cstring>
 #include <numeric>
 
+#include "core/cell/view_cell.h"
 #include "core/device/vulkan/tracing_needs.h"
 #include "core/device/vulkan/vulkan_runner.h"
 #include "core/device/vulkan/vulkan_scene.h"
 #include "core/generate/generate.h"
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
-#include "core/scene/view_cell.h"
 #include "core/shared/border.h"
 #include "core/shared/random_ray.h"
 #include "core/shared/reverse.h"

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "bvh/bvh.h"
+#include "core/cell/view_cell.h"
 #include "core/generate/generate.h"
 #include "core/sampling/make_stage_params.h"
 #include "core/sampling/random_segment.h"
-#include "core/scene/view_cell.h"
 #include "core/shared/gvs_border.h"
 #include "core/shared/random_ray.h"
 #include "core/trace/cpu_tracer.h"

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "core/cell/cell_frame.h"
 #include "core/judge/judge.h"
 #include "core/pvs/pvs_file.h"
-#include "core/scene/cell_frame.h"
 #include "tests/support/random_triangles.h"
 
 namespace sightline::definition_test {

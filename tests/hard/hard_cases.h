@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "core/cell/view_cell.h"
 #include "core/scene/scene.h"
-#include "core/scene/view_cell.h"
 #include "tests/support/boxes.h"
 
 namespace sightline::hard {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/scene/cell_frame.h"
+#include "core/cell/cell_frame.h"
 
 namespace sightline {
 namespace {

@@ -43,7 +43,8 @@ void bakeSome(const std::filesystem::path& file, size_t cells) {
   Bake bake(fiveCells(), file);
   BakeEvents events;
   events.cell_done = [&](uint32_t index, const CellPvs&) { stop = index + 1 >= cells; };
-  EXPECT_FALSE(bake.run("fake", fakeBaker, events, &stop));
+  events.stop = &stop;
+  EXPECT_FALSE(bake.run("fake", fakeBaker, events));
 }
 
 TEST(Bake, WritesAllCellsAndRenames) {
@@ -398,7 +399,8 @@ TEST(Bake, AnInterruptedOverwriteGoesOn) {
     std::atomic<bool> stop{false};
     BakeEvents events;
     events.cell_done = [&](uint32_t, const CellPvs&) { stop = true; };
-    EXPECT_FALSE(bake.run("fake", fakeBaker, events, &stop));
+    events.stop = &stop;
+    EXPECT_FALSE(bake.run("fake", fakeBaker, events));
   }
   EXPECT_EQ(loadPvs(folder / "x.pvs").params.seed, 77u);
   EXPECT_EQ(Bake(other, folder / "x.pvs", true).resumed(), 1u);

@@ -1,4 +1,4 @@
-#include "core/io/png.h"
+#include "core/picture/png.h"
 
 #include <gtest/gtest.h>
 #include <png.h>

@@ -11,6 +11,7 @@
 #include <random>
 #include <thread>
 
+#include "core/bake/require_scene.h"
 #include "core/base/error.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"

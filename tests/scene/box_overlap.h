@@ -3,8 +3,8 @@
 // Overlap Testing, 2001), in the cell's own axes.
 #include <glm/glm.hpp>
 
+#include "core/cell/view_cell.h"
 #include "core/scene/scene.h"
-#include "core/scene/view_cell.h"
 
 namespace sightline::test {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 #include "tests/scene/files.h"
 
 namespace sightline {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <random>
 
-#include "core/scene/cell_frame.h"
+#include "core/cell/cell_frame.h"
 #include "tests/support/make_cell.h"
 
 namespace sightline {

@@ -3,10 +3,10 @@
 
 #include <random>
 
+#include "core/cell/view_cell.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
 #include "core/scene/scene.h"
-#include "core/scene/view_cell.h"
 #include "tests/scene/files.h"
 #include "tests/scene/gltf_files.h"
 

@@ -11,10 +11,10 @@
 
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
+#include "core/cell/cell_frame.h"
 #include "core/generate/generate.h"
 #include "core/generate/mesh_builder.h"
 #include "core/gvs/bake_cell.h"
-#include "core/scene/cell_frame.h"
 #include "core/scene/contained.h"
 #include "tests/scene/box_overlap.h"
 

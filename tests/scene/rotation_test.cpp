@@ -1,5 +1,5 @@
 // Sines, cosines, tangents and directions that do not depend on the C library.
-#include "core/scene/rotation.h"
+#include "core/cell/rotation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <random>
 
-#include "core/scene/cell_frame.h"
+#include "core/cell/cell_frame.h"
 
 namespace sightline {
 namespace {

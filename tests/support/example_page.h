@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
-#include "core/io/png.h"
 #include "core/page/html_report.h"
+#include "core/picture/png.h"
 
 namespace sightline::testing_support {
 

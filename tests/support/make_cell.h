@@ -1,5 +1,5 @@
 #pragma once
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 
 namespace sightline::testing_support {
 

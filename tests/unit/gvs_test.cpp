@@ -1,7 +1,7 @@
 // Rays of the original guided visibility sampling.
 #include <gtest/gtest.h>
 
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 #include "core/shared/gvs_reverse.h"
 #include "tests/support/random_triangles.h"
 

@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 #include "core/shared/vector.h"
 
 namespace sightline {

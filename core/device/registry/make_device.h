@@ -1,27 +1,13 @@
 #pragma once
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "bvh/bvh.h"
 #include "core/device/device.h"
+#include "core/device/registry/device_names.h"
 #include "core/scene/scene.h"
 
 namespace sightline {
-
-/// Devices that this machine has, the unusable ones with their reason.
-std::vector<DeviceInfo> listDevices();
-
-/// What `name` selects. Throws Error as makeTracer would if that is no device that can run here: at once,
-/// before the work that a tree takes.
-DeviceInfo requireDevice(const std::string& name);
-
-/// Whether makeTracer could know the name: "cpu" or "embree"; "opencl" or "vulkan", alone or with ":" and
-/// more.
-bool isDeviceName(const std::string& name);
-
-/// Why makeDevice refuses a name that makeTracer knows, in one line; empty: it does not.
-std::string whyNoBakes(const std::string& name);
 
 /// Makes the device that `name` selects and uploads the scene: "cpu", "opencl", "opencl:INDEX",
 /// "opencl:PART-OF-NAME", or the same with "vulkan". Throws Error that lists what there is.

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/base/parallel_copy.h"
+#include "core/trace/parallel_copy.h"
 #include "core/device/vulkan/tracing_needs.h"
 
 namespace sightline {

@@ -1,7 +1,7 @@
 #pragma once
 #include <glm/glm.hpp>
 
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 
 namespace sightline {
 

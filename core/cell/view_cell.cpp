@@ -1,7 +1,7 @@
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 
-#include "core/scene/cell_frame.h"
-#include "core/scene/rotation.h"
+#include "core/cell/cell_frame.h"
+#include "core/cell/rotation.h"
 
 namespace sightline {
 namespace {

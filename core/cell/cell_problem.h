@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "core/scene/view_cell.h"
+#include "core/cell/view_cell.h"
 
 namespace sightline {
 

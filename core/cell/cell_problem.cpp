@@ -1,11 +1,11 @@
-#include "core/scene/cell_problem.h"
+#include "core/cell/cell_problem.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <set>
 
-#include "core/scene/scene.h"
+#include "core/base/extents.h"
 
 namespace sightline {
 namespace {

@@ -1,4 +1,4 @@
-#include "core/io/json_text.h"
+#include "core/formats/json_text.h"
 
 #include <fmt/format.h>
 

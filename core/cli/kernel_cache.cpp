@@ -1,6 +1,7 @@
-#include "core/cli/pocl_cache.h"
+#include "core/cli/kernel_cache.h"
 
 #include <pwd.h>
+#include <stdlib.h>
 #include <unistd.h>
 
 #include <cstdlib>
@@ -8,7 +9,7 @@
 
 namespace sightline {
 
-void keepPoclCacheInUsersFolder() {
+void keepKernelsInUsersFolder() {
   if (std::getenv("POCL_CACHE_DIR") || std::getenv("XDG_CACHE_HOME") || std::getenv("HOME")) return;
   const passwd* user = getpwuid(getuid());
   if (user && user->pw_dir && user->pw_dir[0] == '/') {

@@ -1,4 +1,4 @@
-#include "core/io/json_object.h"
+#include "core/formats/json_object.h"
 
 #include <fmt/format.h>
 

@@ -1,7 +1,8 @@
+#include "core/bake/require_scene.h"
+
 #include <fmt/core.h>
 
 #include "core/base/error.h"
-#include "core/pvs/pvs_file.h"
 
 namespace sightline {
 

@@ -1,4 +1,4 @@
-#include "core/io/png.h"
+#include "core/picture/png.h"
 
 #include <fmt/format.h>
 #include <png.h>

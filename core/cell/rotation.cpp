@@ -1,4 +1,4 @@
-#include "core/scene/rotation.h"
+#include "core/cell/rotation.h"
 
 #include <cmath>
 

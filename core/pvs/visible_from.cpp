@@ -1,0 +1,21 @@
+#include "core/pvs/visible_from.h"
+
+#include <algorithm>
+
+#include "core/cell/cell_contains.h"
+
+namespace sightline {
+
+const CellPvs* cellAt(const PvsFile& pvs, const glm::dvec3& position) {
+  const auto found =
+      std::ranges::find_if(pvs.cells, [&](const CellPvs& cell) { return cellContains(cell.cell, position); });
+  return found == pvs.cells.end() ? nullptr : &*found;
+}
+
+std::optional<std::span<const uint32_t>> visibleFrom(const PvsFile& pvs, const glm::dvec3& position) {
+  const CellPvs* cell = cellAt(pvs, position);
+  if (cell == nullptr) return {};
+  return cell->triangles;
+}
+
+}  // namespace sightline
