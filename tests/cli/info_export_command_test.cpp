@@ -182,11 +182,11 @@ TEST(ExportCommand, WritesIdsAndJson) {
   expectSays("export " + files.pvs() + " --cell 0 --format json -o " + (files / "x.json") + " --scene " +
                  files.scene(),
              {});
-  const auto json = nlohmann::json::parse(readText(files / "x.json"));
-  EXPECT_EQ(json["ids"], (nlohmann::json{0, 3}));
-  EXPECT_EQ(json["cell"]["name"], "spot");
-  EXPECT_EQ(json["objects"][1]["name"], "far");
-  EXPECT_EQ(json["objects"][1]["visible"], 1);
+  const auto exported = nlohmann::json::parse(readText(files / "x.json"));
+  EXPECT_EQ(exported["ids"], (nlohmann::json{0, 3}));
+  EXPECT_EQ(exported["cell"]["name"], "spot");
+  EXPECT_EQ(exported["objects"][1]["name"], "far");
+  EXPECT_EQ(exported["objects"][1]["visible"], 1);
 }
 
 TEST(ExportCommand, WritesTheVisibleTrianglesAsAScene) {

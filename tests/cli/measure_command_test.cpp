@@ -12,17 +12,9 @@
 namespace sightline {
 namespace {
 
+using test::expectRun;
 using test::ProgramRun;
 using test::runProgram;
-
-ProgramRun expectRun(const std::string& arguments, int exit_code, const std::vector<std::string>& said) {
-  const ProgramRun run = runProgram(arguments);
-  EXPECT_EQ(run.exit_code, exit_code) << arguments << "\n" << run.output;
-  for (const std::string& text : said) {
-    EXPECT_NE(run.output.find(text), std::string::npos) << "expected: " << text << "\n" << run.output;
-  }
-  return run;
-}
 
 /// A small city, baked.
 class MeasureCommandTest : public testing::Test {
@@ -120,8 +112,8 @@ TEST_F(MeasureCommandTest, RemovesItsOwnOldPictures) {
   };
   const auto drawn = [](const std::string& report) {
     std::set<std::string> all;
-    const auto json = nlohmann::json::parse(std::ifstream(path(report)));
-    for (const auto& set : json["sets"]) {
+    const auto drawn_in = nlohmann::json::parse(std::ifstream(path(report)));
+    for (const auto& set : drawn_in["sets"]) {
       for (const auto& cell : set["cells"]) all.insert(cell["pictures"].begin(), cell["pictures"].end());
     }
     return all;

@@ -7,9 +7,9 @@
 
 #include <array>
 #include <cstdio>
-#include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace sightline::test {
 
@@ -32,11 +32,14 @@ inline ProgramRun runProgram(const std::string& arguments, const std::string& en
 }
 
 /// Runs it, and expects the exit code and these parts of what it says.
-inline void expectRun(const std::string& arguments, int exit_code, std::initializer_list<const char*> parts) {
+inline ProgramRun expectRun(const std::string& arguments, int exit_code,
+                            const std::vector<std::string>& said) {
   const ProgramRun run = runProgram(arguments);
   EXPECT_EQ(run.exit_code, exit_code) << arguments << "\n" << run.output;
-  for (const char* part : parts)
-    EXPECT_NE(run.output.find(part), std::string::npos) << part << "\n" << run.output;
+  for (const std::string& text : said) {
+    EXPECT_NE(run.output.find(text), std::string::npos) << "expected: " << text << "\n" << run.output;
+  }
+  return run;
 }
 
 /// A program that runs beside the test.

@@ -42,13 +42,13 @@ TEST(TraceCommand, AnswersOneRay) {
              "triangle 0 at 0x1p+0: right"});
   expectRun(walls.trace("--from -9,0,0 --along -1,0,-1e-3"), 0,
             {"exactly  nothing", "cpu      nothing: right"});
-  const auto json =
+  const auto traced =
       nlohmann::json::parse(runProgram(walls.trace("--from 0,0,0 --along 0,0,-0.5 --json")).output);
-  EXPECT_EQ(json["answers"][0]["triangle"], 1);
-  EXPECT_EQ(json["answers"][0]["verdict"], "right");
-  EXPECT_EQ(json["exact_triangles"], nlohmann::json{1});
-  EXPECT_EQ(json["legal"], true);
-  EXPECT_EQ(json["direction"][2], "-0x1p-1");
+  EXPECT_EQ(traced["answers"][0]["triangle"], 1);
+  EXPECT_EQ(traced["answers"][0]["verdict"], "right");
+  EXPECT_EQ(traced["exact_triangles"], nlohmann::json{1});
+  EXPECT_EQ(traced["legal"], true);
+  EXPECT_EQ(traced["direction"][2], "-0x1p-1");
 }
 
 TEST(TraceCommand, SaysWhatIsWrong) {
