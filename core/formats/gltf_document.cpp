@@ -9,6 +9,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "core/formats/json_object.h"
+#include "core/formats/scene_builder.h"
 
 namespace sightline {
 namespace {
@@ -29,7 +30,7 @@ void checkRequirements(const JsonObject& document) {
   const std::string version = document.requiredObject("asset").text("version").value_or("");
   if (!version.starts_with("2.")) {
     document.fail("asset.version",
-                  fmt::format("\"{}\" is not supported, only glTF 2", version.substr(0, 20)));
+                  fmt::format("\"{}\" is not supported, only glTF 2", cleanName(version.substr(0, 20))));
   }
   for (const std::string& extension : document.texts("extensionsRequired")) {
     if (extension == "EXT_meshopt_compression" || extension == "KHR_mesh_quantization" ||

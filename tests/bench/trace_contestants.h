@@ -27,7 +27,7 @@ inline Contestant cpuContestant(const Workload& work) {
   auto tracer = std::make_shared<CpuTracer>(work.scene, work.bvh);
   auto random = std::make_shared<std::vector<Hit>>(work.random.size());
   auto border = std::make_shared<std::vector<Hit>>(work.border.size());
-  const auto trace_run = [&work, tracer, random](const Run& run) {
+  const auto trace_run = [tracer, random](const Run& run) {
     const uint64_t slots = slotCount(run.segment);
     tbb::parallel_for(uint64_t{0}, (slots + kTraceChunk - 1) / kTraceChunk, [&](uint64_t chunk) {
       std::vector<Ray> rays;

@@ -145,7 +145,7 @@ TEST(Report, EveryKeyIsDocumentedAndEveryDocumentedKeyIsThere) {
 TEST(Report, SurvivesNamesThatAreNotUtf8) {
   BakeReport report = exampleReport();
   report.cells[0].cell.name = "caf\xe9";
-  EXPECT_NO_THROW(json::parse(reportJson(report)));
+  EXPECT_TRUE(json::accept(reportJson(report)));
 }
 
 TEST(Report, WarnsOfMaterialsInOneLineAndPassesOnWhatLoadingSaid) {

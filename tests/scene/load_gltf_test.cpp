@@ -519,6 +519,11 @@ TEST(LoadGltf, ManyTargetsOfManyVerticesAreTooMuch) {
   EXPECT_EQ(loadError("a.glb", file.glb()).find("a.glb: places its meshes so often"), 0u);
 }
 
+TEST(LoadGltf, TheVersionIsQuotedInOneLine) {
+  EXPECT_EQ(loadError("a.gltf", R"({"asset":{"version":"3\n\u001b[2J"}})"),
+            "a.gltf: asset.version: \"3__[2J\" is not supported, only glTF 2");
+}
+
 TEST(LoadGltf, NamesOfFilesHaveNoControlCharacters) {
   for (const char* uri : {"a%00.bin", "a%0A.bin", "a%1B[2J.bin"}) {
     EXPECT_EQ(loadError("a.gltf", squareFile<uint8_t>(5121).gltf(uri)),

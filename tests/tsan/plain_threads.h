@@ -43,24 +43,24 @@ class FirstException {
   std::exception_ptr exception_;
 };
 
-/// Calls body(i) for i = 0 .. count - 1.
+/// Calls body(i) for i = 0 .. count - 1. Who does what is settled before: a shared counter would put the
+/// threads into an order that hides races.
 template <typename Body>
 void forEach(size_t count, const Body& body) {
-  std::atomic<size_t> next{0};
   FirstException exception;
-  const auto work = [&] {
+  const int wanted = int(std::min<size_t>(kThreads, count));
+  const int team = threads + wanted > kMostThreads ? 1 : wanted;
+  threads += team;
+  const auto work = [&](int member) {
     exception.run([&] {
-      for (size_t i = next++; i < count; i = next++) body(i);
+      for (size_t i = size_t(member); i < count; i += size_t(team)) body(i);
     });
   };
   std::vector<std::thread> others;
-  for (int i = 1; i < kThreads && size_t(i) < count && threads < kMostThreads; ++i) {
-    ++threads;
-    others.emplace_back(work);
-  }
-  work();
+  for (int member = 1; member < team; ++member) others.emplace_back(work, member);
+  if (team > 0) work(0);
   for (std::thread& other : others) other.join();
-  threads -= int(others.size());
+  threads -= team;
   exception.rethrow();
 }
 

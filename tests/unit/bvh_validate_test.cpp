@@ -28,16 +28,20 @@ class BvhValidate : public ::testing::Test {
   static uint32_t slots() {
     return sizeof(Node::child) / sizeof(uint32_t);
   }
-  /// Node and child of the n-th leaf, or inner child, or empty slot in memory order.
+  struct Slot {
+    uint32_t node = 0;
+    int child = 0;
+  };
+  /// The n-th leaf, or inner child, or empty slot in memory order.
   template <typename Node, typename Test>
-  static std::pair<uint32_t, int> find(const std::vector<Node>& nodes, Test test, int n = 0) {
+  static Slot find(const std::vector<Node>& nodes, Test test, int n = 0) {
     for (uint32_t i = 0; i < nodes.size(); ++i) {
       for (uint32_t c = 0; c < slots<Node>(); ++c) {
         if (test(nodes[i].child[c], nodes[i].count[c]) && n-- == 0) return {i, static_cast<int>(c)};
       }
     }
     ADD_FAILURE() << "no such slot";
-    return {0, 0};
+    return {};
   }
   static bool isLeaf(uint32_t, uint32_t count) { return count > 0; }
   static bool isInner(uint32_t child, uint32_t count) { return count == 0 && child != 0xffffffffu; }
@@ -55,73 +59,81 @@ TEST_F(BvhValidate, NoNodes) {
 }
 
 TEST_F(BvhValidate, IndexOutOfRange) {
-  const auto [n2, c2] = find(good_.nodes2, isInner);
-  const auto [n8, c8] = find(good_.nodes8, isInner);
-  const auto [l2, d2] = find(good_.nodes2, isLeaf);
-  const auto [l8, d8] = find(good_.nodes8, isLeaf);
+  const Slot slot2 = find(good_.nodes2, isInner);
+  const Slot slot8 = find(good_.nodes8, isInner);
+  const Slot leaf2 = find(good_.nodes2, isLeaf);
+  const Slot leaf8 = find(good_.nodes8, isLeaf);
+  expectComplaint("points past the last node", [&](Bvh& b) {
+    b.nodes2[slot2.node].child[slot2.child] = static_cast<uint32_t>(b.nodes2.size());
+  });
   expectComplaint("points past the last node",
-                  [&](Bvh& b) { b.nodes2[n2].child[c2] = static_cast<uint32_t>(b.nodes2.size()); });
-  expectComplaint("points past the last node", [&](Bvh& b) { b.nodes8[n8].child[c8] = 0xfffffffeu; });
+                  [&](Bvh& b) { b.nodes8[slot8.node].child[slot8.child] = 0xfffffffeu; });
+  expectComplaint("points past the last reference", [&](Bvh& b) {
+    b.nodes2[leaf2.node].child[leaf2.child] = static_cast<uint32_t>(b.references.size());
+  });
   expectComplaint("points past the last reference",
-                  [&](Bvh& b) { b.nodes2[l2].child[d2] = static_cast<uint32_t>(b.references.size()); });
-  expectComplaint("points past the last reference", [&](Bvh& b) { b.nodes8[l8].child[d8] = 0xfffffffeu; });
+                  [&](Bvh& b) { b.nodes8[leaf8.node].child[leaf8.child] = 0xfffffffeu; });
 }
 
 TEST_F(BvhValidate, NodeReachedTwiceOrNever) {
-  const auto [n2, c2] = find(good_.nodes2, isInner, 3);
-  const auto [n8, c8] = find(good_.nodes8, isInner, 3);
-  expectComplaint("reached twice", [&](Bvh& b) { b.nodes2[n2].child[c2] = 0; });
-  expectComplaint("reached twice", [&](Bvh& b) { b.nodes8[n8].child[c8] = 0; });
+  const Slot slot2 = find(good_.nodes2, isInner, 3);
+  const Slot slot8 = find(good_.nodes8, isInner, 3);
+  expectComplaint("reached twice", [&](Bvh& b) { b.nodes2[slot2.node].child[slot2.child] = 0; });
+  expectComplaint("reached twice", [&](Bvh& b) { b.nodes8[slot8.node].child[slot8.child] = 0; });
   expectComplaint("unreachable", [&](Bvh& b) { b.nodes2.push_back(b.nodes2.back()); });
   expectComplaint("unreachable", [&](Bvh& b) { b.nodes8.push_back(b.nodes8.back()); });
 }
 
 TEST_F(BvhValidate, BoxThatDoesNotContainItsChildren) {
-  const auto [n2, c2] = find(good_.nodes2, isInner, 2);
-  const auto [n8, c8] = find(good_.nodes8, isInner, 2);
+  const Slot slot2 = find(good_.nodes2, isInner, 2);
+  const Slot slot8 = find(good_.nodes8, isInner, 2);
   expectComplaint("is not contained", [&](Bvh& b) {
-    glm::vec4& y = b.nodes2[n2].y;
-    y[2 * c2 + 1] = std::nextafter(y[2 * c2 + 1], -1e9f);
+    glm::vec4& y = b.nodes2[slot2.node].y;
+    y[2 * slot2.child + 1] = std::nextafter(y[2 * slot2.child + 1], -1e9f);
   });
   expectComplaint("is not contained", [&](Bvh& b) {
-    float& x = b.nodes8[n8].low_x[c8];
+    float& x = b.nodes8[slot8.node].low_x[slot8.child];
     x = std::nextafter(x, 1e9f);
   });
   for (const float bad : {kNaN, 1e9f}) {
-    expectComplaint("low > high or NaN", [&](Bvh& b) { b.nodes2[n2].z[2 * c2] = bad; });
-    expectComplaint("low > high or NaN", [&](Bvh& b) { b.nodes8[n8].low_z[c8] = bad; });
+    expectComplaint("low > high or NaN", [&](Bvh& b) { b.nodes2[slot2.node].z[2 * slot2.child] = bad; });
+    expectComplaint("low > high or NaN", [&](Bvh& b) { b.nodes8[slot8.node].low_z[slot8.child] = bad; });
   }
 }
 
 TEST_F(BvhValidate, LeafSizes) {
-  const auto [n2, c2] = find(good_.nodes2, isLeaf);
-  expectComplaint("more than 8", [&](Bvh& b) { b.nodes2[n2].count[c2] = 9; });
-  expectComplaint("", [&](Bvh& b) { b.nodes2[n2].count[c2] = 0xffffffffu; });
+  const Slot slot2 = find(good_.nodes2, isLeaf);
+  expectComplaint("more than 8", [&](Bvh& b) { b.nodes2[slot2.node].count[slot2.child] = 9; });
+  expectComplaint("", [&](Bvh& b) { b.nodes2[slot2.node].count[slot2.child] = 0xffffffffu; });
 }
 
 TEST_F(BvhValidate, ReferencesInTwoLeavesOrInNone) {
-  const auto [n2, c2] = find(good_.nodes2, isLeaf, 5);
-  const auto [m2, d2] = find(good_.nodes2, isLeaf, 6);
-  expectComplaint("shares its references", [&](Bvh& b) { b.nodes2[n2].child[c2] = b.nodes2[m2].child[d2]; });
-  expectComplaint("is in no leaf or in two", [&](Bvh& b) { ++b.nodes2[n2].count[c2]; });
+  const Slot slot2 = find(good_.nodes2, isLeaf, 5);
+  const Slot other2 = find(good_.nodes2, isLeaf, 6);
+  expectComplaint("shares its references", [&](Bvh& b) {
+    b.nodes2[slot2.node].child[slot2.child] = b.nodes2[other2.node].child[other2.child];
+  });
+  expectComplaint("is in no leaf or in two", [&](Bvh& b) { ++b.nodes2[slot2.node].count[slot2.child]; });
   expectComplaint("is in no leaf or in two", [&](Bvh& b) { b.references.push_back(0); });
 }
 
 TEST_F(BvhValidate, LayoutsWithDifferentLeaves) {
-  const auto [n8, c8] = find(good_.nodes8, isLeaf, 5);
-  expectComplaint("differs between", [&](Bvh& b) { ++b.nodes8[n8].count[c8]; });
-  const auto [m8, d8] = find(good_.nodes8, [](uint32_t, uint32_t count) { return count == 2; });
-  expectComplaint("differs between", [&](Bvh& b) { b.nodes8[m8].count[d8] = 1; });
+  const Slot slot8 = find(good_.nodes8, isLeaf, 5);
+  expectComplaint("differs between", [&](Bvh& b) { ++b.nodes8[slot8.node].count[slot8.child]; });
+  const Slot other8 = find(good_.nodes8, [](uint32_t, uint32_t count) { return count == 2; });
+  expectComplaint("differs between", [&](Bvh& b) { b.nodes8[other8.node].count[other8.child] = 1; });
   expectComplaint("differs between", [&](Bvh& b) {
-    float& x = b.nodes8[n8].high_x[c8];
+    float& x = b.nodes8[slot8.node].high_x[slot8.child];
     x = std::nextafter(x, -1e9f);
   });
 }
 
 TEST_F(BvhValidate, EmptySlots) {
-  const auto [n8, c8] = find(good_.nodes8, isEmpty);
-  expectComplaint("is empty but", [&](Bvh& b) { b.nodes8[n8].count[c8] = 1; });
-  expectComplaint("is empty but", [&](Bvh& b) { b.nodes8[n8].low_y[c8] = b.nodes8[n8].high_y[c8]; });
+  const Slot slot8 = find(good_.nodes8, isEmpty);
+  expectComplaint("is empty but", [&](Bvh& b) { b.nodes8[slot8.node].count[slot8.child] = 1; });
+  expectComplaint("is empty but", [&](Bvh& b) {
+    b.nodes8[slot8.node].low_y[slot8.child] = b.nodes8[slot8.node].high_y[slot8.child];
+  });
   expectComplaint("has no child", [&](Bvh& b) {
     for (int i = 0; i < 8; ++i) {
       b.nodes8[0].count[i] = 0;
@@ -133,8 +145,8 @@ TEST_F(BvhValidate, EmptySlots) {
 }
 
 TEST_F(BvhValidate, TrianglesMissingDoubledOrUnknown) {
-  const auto [n2, c2] = find(good_.nodes2, [](uint32_t, uint32_t count) { return count >= 2; });
-  const uint32_t first = good_.nodes2[n2].child[c2];
+  const Slot slot2 = find(good_.nodes2, [](uint32_t, uint32_t count) { return count >= 2; });
+  const uint32_t first = good_.nodes2[slot2.node].child[slot2.child];
   expectComplaint("twice", [&](Bvh& b) { b.references[first] = b.references[first + 1]; });
   expectComplaint("is no triangle", [&](Bvh& b) { b.references[7] = 500; });
   expectComplaint("is not covered", [&](Bvh& b) { std::swap(b.references[0], b.references[499]); });
