@@ -13,7 +13,6 @@
 #include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/help_format.h"
-#include "core/cli/kernel_cache.h"
 #include "core/cli/usage.h"
 
 namespace sightline {
@@ -73,7 +72,6 @@ int main(int argc, char** argv) {
   using namespace sightline;
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not end a bake
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of the write
-  keepKernelsInUsersFolder();
   CLI::App app("Potentially visible sets of scenes by guided visibility sampling (GVS++)", "sightline");
   app.set_version_flag("--version", "sightline " SL_VERSION);
   app.require_subcommand(1);

@@ -1,7 +1,10 @@
 #include "core/opencl/opencl_devices.h"
 
 #include <fmt/format.h>
+#include <pwd.h>
+#include <unistd.h>
 
+#include <cstdlib>
 #include <utility>
 
 #include "core/base/error.h"
@@ -48,6 +51,18 @@ OpenClDevice describeDevice(cl_device_id id, size_t index) {
   return device;
 }
 
+/// Without HOME, PoCL would keep compiled kernels in /tmp, where others may write: sends it to the cache
+/// folder of the user's entry in the password file, or tells it to keep nothing.
+void keepCacheInUsersFolder() {
+  if (std::getenv("POCL_CACHE_DIR") || std::getenv("XDG_CACHE_HOME") || std::getenv("HOME")) return;
+  const passwd* user = getpwuid(getuid());
+  if (user && user->pw_dir && user->pw_dir[0] == '/') {
+    setenv("POCL_CACHE_DIR", (std::string(user->pw_dir) + "/.cache/pocl").c_str(), 0);
+  } else {
+    setenv("POCL_KERNEL_CACHE", "0", 0);
+  }
+}
+
 /// GPUs before CPUs before the rest.
 int rank(const OpenClDevice& device) {
   return device.type & CL_DEVICE_TYPE_GPU ? 0 : (device.type & CL_DEVICE_TYPE_CPU ? 1 : 2);
@@ -71,6 +86,7 @@ std::string whyFloatsDiffer(cl_device_fp_config floats, cl_device_fp_config doub
 }
 
 std::vector<OpenClDevice> findOpenClDevices() {
+  keepCacheInUsersFolder();
   std::vector<OpenClDevice> devices;
   cl_uint platform_count = 0;
   // Without an installed driver the loader answers with an error; that is no failure of ours.
