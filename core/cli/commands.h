@@ -19,7 +19,9 @@ struct ExitCode : std::exception {
 };
 
 #define SL_COMMAND(function) void function(CLI::App& app);
+#define SL_COMMAND_LEFT_OUT(name, why)
 #include "generated/commands.inc"
 #undef SL_COMMAND
+#undef SL_COMMAND_LEFT_OUT
 
 }  // namespace sightline
