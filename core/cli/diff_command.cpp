@@ -27,10 +27,6 @@ std::string reportText(const DiffCommand& command, const PvsDiff& diff) {
   return jsonText(json);
 }
 
-void say(const std::string& line) {
-  std::fputs((line + "\n").c_str(), stdout);
-}
-
 void run(const DiffCommand& command) {
   requireSeparate(std::array{command.report}, std::array{command.a, command.b});
   const TextOutputs outputs({&command.report, 1});
@@ -38,12 +34,12 @@ void run(const DiffCommand& command) {
   const PvsDiff diff = diffPvs(a, b);
   const std::vector<std::string> lines = diffLines(diff);
   const size_t shown = size_t(std::min<uint64_t>(lines.size(), command.lines));
-  for (size_t i = 0; i < shown; ++i) say(lines[i]);
-  if (shown < lines.size()) say(fmt::format("... and {}", counted(lines.size() - shown, "more difference")));
+  for (size_t i = 0; i < shown; ++i) fmt::print("{}\n", lines[i]);
+  if (shown < lines.size()) fmt::print("... and {}\n", counted(lines.size() - shown, "more difference"));
   if (a.version != b.version) {
-    say(fmt::format("formats: version {} in A, {} in B (no difference)", a.version, b.version));
+    fmt::print("formats: version {} in A, {} in B (no difference)\n", a.version, b.version);
   }
-  say(diffVerdict(diff));
+  fmt::print("{}\n", diffVerdict(diff));
   std::fflush(stdout);
   if (!command.report.empty()) outputs.save(reportText(command, diff), command.report);
   if (!diff.same()) throw ExitCode{kExitPastLimit};

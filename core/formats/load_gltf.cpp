@@ -308,7 +308,7 @@ Scene loadDocument(std::string_view text, std::string_view bin, const std::files
   const std::string name = file.string();
   const GltfDocument document = readGltfDocument(parseJson(text, name), name);
   GltfData data(document, bin, file);
-  return GltfLoader(document, json.size() + bin.size(), data, name, options).load();
+  return GltfLoader(document, text.size() + bin.size(), data, name, options).load();
 }
 
 }  // namespace

@@ -226,8 +226,7 @@ TEST(LoadObj, CountsGlass) {
 }
 
 TEST(LoadObj, WarningsAreCleanWhateverTheFileNames) {
-  const Scene scene =
-      loadText("a.obj", "mtllib m\x1b\x80.mtl\n" + std::string(kSquare) + "usemtl a\nf 1 2 3\n");
+  const Scene scene = loadText("a.obj", "mtllib m\x1b\x80.mtl\n" + kObjSquare + "usemtl a\nf 1 2 3\n");
   ASSERT_EQ(scene.warnings.size(), 1u);
   EXPECT_NE(scene.warnings[0].find("/m__.mtl: cannot open"), std::string::npos) << scene.warnings[0];
 }

@@ -15,7 +15,7 @@ struct Iteration {
   uint32_t found;
 };
 
-struct Case {
+struct StopCase {
   const char* name;
   BakeParams params;
   std::vector<Iteration> iterations;
@@ -35,7 +35,7 @@ BakeParams limits(uint32_t threshold, uint32_t quiet, uint64_t max_rays = 0, dou
 TEST(StopRule, EndsWhereTheTableSays) {
   const std::vector<Iteration> falling = {{100, 1, 50}, {200, 2, 10}, {300, 3, 9}, {400, 4, 0}};
   const std::vector<Iteration> uneven = {{100, 1, 5}, {200, 2, 10}, {300, 3, 9}, {400, 4, 9}};
-  const Case cases[] = {
+  const StopCase cases[] = {
       {"the first with fewer than T", limits(10, 1), falling, 3, StopReason::kConverged},
       {"T itself is not fewer", limits(9, 1), falling, 4, StopReason::kConverged},
       {"T = 0 never ends", limits(0, 1), falling, 0, StopReason::kConverged},
@@ -53,7 +53,7 @@ TEST(StopRule, EndsWhereTheTableSays) {
       {"a limit before T", limits(10, 1, 100), falling, 1, StopReason::kRayLimit},
       {"a limit and T in one iteration", limits(10, 1, 300), falling, 3, StopReason::kRayLimit},
   };
-  for (const Case& c : cases) {
+  for (const StopCase& c : cases) {
     SCOPED_TRACE(c.name);
     StopRule rule(c.params);
     size_t ended = 0;
