@@ -173,15 +173,15 @@ TEST_F(Diff, ShowsSoManyLinesAndReportsAll) {
             "different: in 1 input, and 1 of 2 cells that both have\n");
   const auto run = runSeparately("diff a.pvs b.pvs --lines 0 --report -", folder_.path());
   EXPECT_EQ(run.exit_code, 3);
-  const auto json = nlohmann::json::parse(run.output);
-  EXPECT_EQ(json["same"], false);
-  EXPECT_EQ(json["inputs"], nlohmann::json::parse(R"([{"name":"seed","a":"77","b":"78"}])"));
-  EXPECT_EQ(json["compared_cells"], 2);
-  EXPECT_EQ(json["compared_triangles"], 7);
-  ASSERT_EQ(json["cells"].size(), 1u);
-  EXPECT_EQ(json["cells"][0]["name"], "a");
-  EXPECT_EQ(json["cells"][0]["statistics"].size(), 2u);
-  EXPECT_EQ(json["cells"][0]["only_a"]["count"], 0);
+  const auto document = nlohmann::json::parse(run.output);
+  EXPECT_EQ(document["same"], false);
+  EXPECT_EQ(document["inputs"], nlohmann::json::parse(R"([{"name":"seed","a":"77","b":"78"}])"));
+  EXPECT_EQ(document["compared_cells"], 2);
+  EXPECT_EQ(document["compared_triangles"], 7);
+  ASSERT_EQ(document["cells"].size(), 1u);
+  EXPECT_EQ(document["cells"][0]["name"], "a");
+  EXPECT_EQ(document["cells"][0]["statistics"].size(), 2u);
+  EXPECT_EQ(document["cells"][0]["only_a"]["count"], 0);
 }
 
 TEST_F(Diff, ReadsOlderFormatsAndSaysWhatItCannotRead) {

@@ -28,6 +28,7 @@ struct Totals {
   std::string worst;
 };
 
+/// baker: finds the rays' targets.
 Totals trace(const hard::HardCase& c, const Bvh& bvh, Tracer& device, Device& baker) {
   CrosscheckOptions options;
   options.rays = kRays;
@@ -85,11 +86,11 @@ class Hard : public testing::TestWithParam<size_t> {
 };
 
 TEST_P(Hard, NoRayIsLostAndNoTriangleIsMadeUp) {
-  const auto baker = makeDevice("cpu", case_.scene, bvh_);
+  const auto cpu = makeDevice("cpu", case_.scene, bvh_);
   for (const DeviceInfo& info : listDevices()) {
     if (!info.unusable.empty()) continue;
     const auto device = makeTracer(info.id, case_.scene, bvh_);
-    const Totals totals = trace(case_, bvh_, *device, *baker);
+    const Totals totals = trace(case_, bvh_, *device, *cpu);
     const uint64_t missed = totals.verdicts[size_t(Verdict::kMissed)];
     const uint64_t wrong = totals.verdicts[size_t(Verdict::kWrong)];
     EXPECT_GT(totals.rays, 5 * kRays);
