@@ -68,13 +68,13 @@ void sayKept(const Bake& bake, const char* why) {
 }
 
 /// The tree and the device that refers to it.
-struct Tracer {
+struct TreeAndDevice {
   Bvh bvh;
   std::unique_ptr<Device> device;
 };
 
 /// Fills `tracer` in place: the device refers to its tree.
-void openTracer(Tracer& tracer, const BakeOptions& options, const Scene& scene, BakeReport& report) {
+void openTracer(TreeAndDevice& tracer, const BakeOptions& options, const Scene& scene, BakeReport& report) {
   requireDevice(options.device);
   BvhConfig config;
   config.spatial_splits = options.spatial_splits;
@@ -103,7 +103,7 @@ NearestHits nearestHits(Tracer& device) {
 
 /// Warnings of the planned cells, by the device, or without one (of a complete bake) by a tree made for it.
 std::vector<std::vector<CellWarning>> checkPlanned(const BakeOptions& options, const Scene& scene,
-                                                   const Bake& bake, const Tracer& tracer) {
+                                                   const Bake& bake, const TreeAndDevice& tracer) {
   const std::vector<ViewCell>& cells = bake.head().planned;
   if (tracer.device) {
     return checkCells(scene, tracer.bvh, cells, options.free_side, nearestHits(*tracer.device));
@@ -117,8 +117,8 @@ std::vector<std::vector<CellWarning>> checkPlanned(const BakeOptions& options, c
 }
 
 /// Says what can be said of the cells before the bake. Throws Error with --strict-cells.
-void warnOfCells(const BakeOptions& options, const Scene& scene, const Bake& bake, const Tracer& tracer,
-                 BakeReport& report, CellWarningPrinter& printer) {
+void warnOfCells(const BakeOptions& options, const Scene& scene, const Bake& bake,
+                 const TreeAndDevice& tracer, BakeReport& report, CellWarningPrinter& printer) {
   report.warnings = checkPlanned(options, scene, bake, tracer);
   std::vector<WarnedCell> cells;
   for (size_t i = 0; i < report.warnings.size(); ++i) {
@@ -269,7 +269,7 @@ void runBake(const BakeOptions& options) {
 
   int exit_code = 0;
   BakePage page;
-  Tracer tracer;
+  TreeAndDevice tracer;
   if (bake.complete()) {
     say(fmt::format("{}: already complete, nothing to bake (--overwrite bakes again)", options.out.string()));
   }

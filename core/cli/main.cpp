@@ -13,6 +13,7 @@
 #include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/help_format.h"
+#include "core/cli/pocl_cache.h"
 #include "core/cli/usage.h"
 
 namespace sightline {
@@ -65,6 +66,7 @@ int main(int argc, char** argv) {
   using namespace sightline;
   std::signal(SIGPIPE, SIG_IGN);  // a closed pipe must not end a bake
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of the write
+  keepPoclCacheInUsersFolder();
   CLI::App app("Potentially visible sets of scenes by guided visibility sampling (GVS++)", "sightline");
   app.set_version_flag("--version", "sightline " SL_VERSION);
   app.require_subcommand(1);

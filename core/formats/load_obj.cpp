@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <exception>
 #include <map>
 #include <optional>
 #include <set>
@@ -78,7 +79,7 @@ struct Unread {
 };
 
 /// Thrown to start again: a face uses a vertex that stands further down.
-struct ForwardReference {};
+struct ForwardReference : std::exception {};
 
 class ObjReader {
  public:

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "cl_kernels/program_source.h"
 #include "core/base/error.h"
 #include "core/base/parallel_copy.h"
 #include "core/opencl/opencl_devices.h"
@@ -78,7 +77,7 @@ ClBuffer::~ClBuffer() {
 }
 
 OpenClContext::OpenClContext(const std::string& selector) {
-  const OpenClDevice device = selectOpenClDevice(selector);
+  const OpenClDeviceChoice device = selectOpenClDevice(selector);
   device_ = device.id;
   info_ = device.info;
   is_cpu_ = (device.type & CL_DEVICE_TYPE_CPU) != 0;
@@ -93,17 +92,15 @@ OpenClContext::OpenClContext(const std::string& selector) {
   checkCl(code, "clCreateCommandQueue");
 }
 
-void OpenClContext::build(const std::string& options) {
+void OpenClContext::build(const char* source, const std::string& options) {
   cl_int code = CL_SUCCESS;
-  const char* source = kProgramSource;
   program_ = ClHandle<cl_program, clReleaseProgram>(
       clCreateProgramWithSource(context_.get(), 1, &source, nullptr, &code));
   checkCl(code, "clCreateProgramWithSource");
-  const std::string all = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt " + options;
-  code = clBuildProgram(program_.get(), 1, &device_, all.c_str(), nullptr, nullptr);
+  code = clBuildProgram(program_.get(), 1, &device_, options.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS) {
     throw Error(fmt::format("{} ({}) could not compile the kernels with \"{}\": {} ({})\n{}", info_.id,
-                            info_.name, all, codeName(code), code, buildLog(program_.get(), device_)));
+                            info_.name, options, codeName(code), code, buildLog(program_.get(), device_)));
   }
 }
 

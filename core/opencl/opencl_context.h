@@ -82,9 +82,9 @@ class OpenClContext {
   /// From now on buffers take so many bytes in all at most.
   void limitMemory(uint64_t bytes) { memory_limit_ = std::min(bytes, info_.memory_bytes); }
 
-  /// Compiles the embedded program (cl_kernels/program.cl) with further options such as "-DSL_PACKET=8".
-  /// The Error of a failed build holds the log.
-  void build(const std::string& options);
+  /// Compiles a program in OpenCL C, which replaces that built before, with the compiler's options, such as
+  /// "-cl-std=CL1.2". The Error of a failed build holds the log.
+  void build(const char* source, const std::string& options);
   ClKernel kernel(const char* name) const;
 
   /// what: for the message when it does not fit ("triangles of the scene"). 0 bytes: a small dummy.

@@ -1,10 +1,7 @@
 #include "core/opencl/opencl_devices.h"
 
 #include <fmt/format.h>
-#include <pwd.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <utility>
 
 #include "core/base/error.h"
@@ -31,8 +28,8 @@ std::string whyUnusable(cl_device_id device) {
                          clDeviceValue<cl_device_fp_config>(device, CL_DEVICE_DOUBLE_FP_CONFIG));
 }
 
-OpenClDevice describeDevice(cl_device_id id, size_t index) {
-  OpenClDevice device;
+OpenClDeviceChoice describeDevice(cl_device_id id, size_t index) {
+  OpenClDeviceChoice device;
   device.id = id;
   device.info.id = fmt::format("opencl:{}", index);
   device.info.exact = true;
@@ -51,20 +48,8 @@ OpenClDevice describeDevice(cl_device_id id, size_t index) {
   return device;
 }
 
-/// Without HOME, PoCL would keep compiled kernels in /tmp, where others may write: sends it to the cache
-/// folder of the user's entry in the password file, or tells it to keep nothing.
-void keepCacheInUsersFolder() {
-  if (std::getenv("POCL_CACHE_DIR") || std::getenv("XDG_CACHE_HOME") || std::getenv("HOME")) return;
-  const passwd* user = getpwuid(getuid());
-  if (user && user->pw_dir && user->pw_dir[0] == '/') {
-    setenv("POCL_CACHE_DIR", (std::string(user->pw_dir) + "/.cache/pocl").c_str(), 0);
-  } else {
-    setenv("POCL_KERNEL_CACHE", "0", 0);
-  }
-}
-
 /// GPUs before CPUs before the rest.
-int rank(const OpenClDevice& device) {
+int rank(const OpenClDeviceChoice& device) {
   return device.type & CL_DEVICE_TYPE_GPU ? 0 : (device.type & CL_DEVICE_TYPE_CPU ? 1 : 2);
 }
 
@@ -85,9 +70,8 @@ std::string whyFloatsDiffer(cl_device_fp_config floats, cl_device_fp_config doub
   return {};
 }
 
-std::vector<OpenClDevice> findOpenClDevices() {
-  keepCacheInUsersFolder();
-  std::vector<OpenClDevice> devices;
+std::vector<OpenClDeviceChoice> findOpenClDevices() {
+  std::vector<OpenClDeviceChoice> devices;
   cl_uint platform_count = 0;
   // Without an installed driver the loader answers with an error; that is no failure of ours.
   if (clGetPlatformIDs(0, nullptr, &platform_count) != CL_SUCCESS) return devices;
@@ -103,7 +87,7 @@ std::vector<OpenClDevice> findOpenClDevices() {
   return devices;
 }
 
-OpenClDevice selectOpenClDevice(const std::string& selector) {
+OpenClDeviceChoice selectOpenClDevice(const std::string& selector) {
   return selectDevice(
       selector, "opencl", findOpenClDevices(), rank,
       "no OpenCL device found: install a driver (Debian: pocl-opencl-icd runs on any processor; it "
@@ -116,7 +100,7 @@ DeviceInfo requireOpenClDevice(const std::string& selector) {
 
 std::vector<DeviceInfo> listOpenClDevices() {
   std::vector<DeviceInfo> list;
-  for (OpenClDevice& device : findOpenClDevices()) list.push_back(std::move(device.info));
+  for (OpenClDeviceChoice& device : findOpenClDevices()) list.push_back(std::move(device.info));
   return list;
 }
 

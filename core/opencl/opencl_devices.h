@@ -5,21 +5,21 @@
 namespace sightline {
 
 /// A device found, and what decides whether and how it is used.
-struct OpenClDevice {
+struct OpenClDeviceChoice {
   cl_device_id id = nullptr;
   cl_device_type type = 0;
   DeviceInfo info;
 };
 
 /// All devices of all platforms; a platform that fails to answer is left out.
-std::vector<OpenClDevice> findOpenClDevices();
+std::vector<OpenClDeviceChoice> findOpenClDevices();
 
 /// Why the results of a device with such floats and doubles would differ from other devices', in one line;
 /// empty: they do not. The arguments: CL_DEVICE_SINGLE_FP_CONFIG and CL_DEVICE_DOUBLE_FP_CONFIG.
 std::string whyFloatsDiffer(cl_device_fp_config floats, cl_device_fp_config doubles);
 
 /// The device for a selector (see OpenClContext). Throws Error.
-OpenClDevice selectOpenClDevice(const std::string& selector);
+OpenClDeviceChoice selectOpenClDevice(const std::string& selector);
 
 /// A fixed-size property of a device.
 template <typename T>

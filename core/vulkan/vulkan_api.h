@@ -15,62 +15,64 @@ namespace sightline {
   X(vkGetPhysicalDeviceMemoryProperties)      \
   X(vkGetPhysicalDeviceQueueFamilyProperties) \
   X(vkEnumerateDeviceExtensionProperties) X(vkCreateDevice) X(vkGetDeviceProcAddr)
-#define SL_VULKAN_DEVICE_FUNCTIONS(X)           \
-  X(vkDestroyDevice)                            \
-  X(vkGetDeviceQueue)                           \
-  X(vkDeviceWaitIdle)                           \
-  X(vkQueueSubmit)                              \
-  X(vkCreateFence)                              \
-  X(vkDestroyFence)                             \
-  X(vkResetFences)                              \
-  X(vkWaitForFences)                            \
-  X(vkCreateCommandPool)                        \
-  X(vkDestroyCommandPool)                       \
-  X(vkResetCommandPool)                         \
-  X(vkAllocateCommandBuffers)                   \
-  X(vkBeginCommandBuffer)                       \
-  X(vkEndCommandBuffer)                         \
-  X(vkCreateBuffer)                             \
-  X(vkDestroyBuffer)                            \
-  X(vkGetBufferMemoryRequirements)              \
-  X(vkAllocateMemory)                           \
-  X(vkFreeMemory)                               \
-  X(vkBindBufferMemory)                         \
-  X(vkMapMemory)                                \
-  X(vkGetBufferDeviceAddress)                   \
-  X(vkCreateShaderModule)                       \
-  X(vkDestroyShaderModule)                      \
-  X(vkCreatePipelineLayout)                     \
-  X(vkDestroyPipelineLayout)                    \
-  X(vkCreateComputePipelines)                   \
-  X(vkDestroyPipeline)                          \
-  X(vkCreateQueryPool)                          \
-  X(vkDestroyQueryPool)                         \
-  X(vkGetQueryPoolResults)                      \
-  X(vkCmdResetQueryPool)                        \
-  X(vkCmdPipelineBarrier)                       \
-  X(vkCmdFillBuffer)                            \
-  X(vkCmdUpdateBuffer)                          \
-  X(vkCmdCopyBuffer)                            \
-  X(vkCmdPushConstants)                         \
-  X(vkCmdBindPipeline)                          \
-  X(vkCmdDispatch)                              \
-  X(vkCreateImage)                              \
-  X(vkDestroyImage)                             \
-  X(vkGetImageMemoryRequirements)               \
-  X(vkBindImageMemory)                          \
-  X(vkCreateImageView)                          \
-  X(vkDestroyImageView)                         \
-  X(vkCreateRenderPass)                         \
-  X(vkDestroyRenderPass)                        \
-  X(vkCreateFramebuffer)                        \
-  X(vkDestroyFramebuffer)                       \
-  X(vkCreateGraphicsPipelines)                  \
-  X(vkCmdBeginRenderPass)                       \
-  X(vkCmdEndRenderPass)                         \
-  X(vkCmdNextSubpass)                           \
-  X(vkCmdDrawIndirect)                          \
-  X(vkCmdCopyImageToBuffer)                     \
+#define SL_VULKAN_DEVICE_FUNCTIONS(X) \
+  X(vkDestroyDevice)                  \
+  X(vkGetDeviceQueue)                 \
+  X(vkDeviceWaitIdle)                 \
+  X(vkQueueSubmit)                    \
+  X(vkCreateFence)                    \
+  X(vkDestroyFence)                   \
+  X(vkResetFences)                    \
+  X(vkWaitForFences)                  \
+  X(vkCreateCommandPool)              \
+  X(vkDestroyCommandPool)             \
+  X(vkResetCommandPool)               \
+  X(vkAllocateCommandBuffers)         \
+  X(vkBeginCommandBuffer)             \
+  X(vkEndCommandBuffer)               \
+  X(vkCreateBuffer)                   \
+  X(vkDestroyBuffer)                  \
+  X(vkGetBufferMemoryRequirements)    \
+  X(vkAllocateMemory)                 \
+  X(vkFreeMemory)                     \
+  X(vkBindBufferMemory)               \
+  X(vkMapMemory)                      \
+  X(vkGetBufferDeviceAddress)         \
+  X(vkCreateShaderModule)             \
+  X(vkDestroyShaderModule)            \
+  X(vkCreatePipelineLayout)           \
+  X(vkDestroyPipelineLayout)          \
+  X(vkCreateComputePipelines)         \
+  X(vkDestroyPipeline)                \
+  X(vkCreateQueryPool)                \
+  X(vkDestroyQueryPool)               \
+  X(vkGetQueryPoolResults)            \
+  X(vkCmdResetQueryPool)              \
+  X(vkCmdPipelineBarrier)             \
+  X(vkCmdFillBuffer)                  \
+  X(vkCmdUpdateBuffer)                \
+  X(vkCmdCopyBuffer)                  \
+  X(vkCmdPushConstants)               \
+  X(vkCmdBindPipeline)                \
+  X(vkCmdDispatch)                    \
+  X(vkCreateImage)                    \
+  X(vkDestroyImage)                   \
+  X(vkGetImageMemoryRequirements)     \
+  X(vkBindImageMemory)                \
+  X(vkCreateImageView)                \
+  X(vkDestroyImageView)               \
+  X(vkCreateRenderPass)               \
+  X(vkDestroyRenderPass)              \
+  X(vkCreateFramebuffer)              \
+  X(vkDestroyFramebuffer)             \
+  X(vkCreateGraphicsPipelines)        \
+  X(vkCmdBeginRenderPass)             \
+  X(vkCmdEndRenderPass)               \
+  X(vkCmdNextSubpass)                 \
+  X(vkCmdDrawIndirect)                \
+  X(vkCmdCopyImageToBuffer)
+// Only with VK_KHR_acceleration_structure.
+#define SL_VULKAN_STRUCTURE_FUNCTIONS(X)        \
   X(vkCreateAccelerationStructureKHR)           \
   X(vkDestroyAccelerationStructureKHR)          \
   X(vkGetAccelerationStructureBuildSizesKHR)    \
@@ -90,6 +92,7 @@ struct VulkanApi {
   SL_VULKAN_LOADER_FUNCTIONS(SL_MEMBER)
   SL_VULKAN_INSTANCE_FUNCTIONS(SL_MEMBER)
   SL_VULKAN_DEVICE_FUNCTIONS(SL_MEMBER)
+  SL_VULKAN_STRUCTURE_FUNCTIONS(SL_MEMBER)
   SL_VULKAN_PIPELINE_FUNCTIONS(SL_MEMBER)
 #undef SL_MEMBER
 
@@ -97,7 +100,7 @@ struct VulkanApi {
   void loadLoader();
   /// Throw Error that names the first function that is missing.
   void loadInstance(VkInstance instance);
-  void loadDevice(VkDevice device, bool ray_tracing_pipelines);
+  void loadDevice(VkDevice device, bool acceleration_structures, bool ray_tracing_pipelines);
 };
 
 /// Throws Error that names the call and the code, if it is not VK_SUCCESS.

@@ -23,7 +23,7 @@ class VulkanCommands {
   void updateBeside(const VulkanBuffer& buffer, const void* data, uint64_t bytes, uint64_t offset);
   void copy(const VulkanBuffer& from, const VulkanBuffer& to, uint64_t bytes, uint64_t from_offset = 0,
             uint64_t to_offset = 0);
-  /// launch: address of the VulkanLaunch.
+  /// launch: of VulkanPush.
   void run(const VulkanStage& stage, VkDeviceAddress launch, uint32_t count);
   /// For other commands: the buffer in recording, after a barrier.
   VkCommandBuffer next();

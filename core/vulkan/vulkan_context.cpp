@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "core/base/error.h"
 
@@ -21,31 +22,17 @@ double mebibytes(uint64_t bytes) {
   return double(bytes) / 1048576.0;
 }
 
-/// Families of the queue for everything (with graphics, if it can be: drivers list the full queue first) and,
-/// if there is one that does nothing else, of the queue for copies.
-std::vector<uint32_t> chooseFamilies(const VulkanApi& api, VkPhysicalDevice device) {
-  uint32_t count = 0;
-  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  std::optional<uint32_t> compute, transfer;
-  for (uint32_t i = 0; i < count; ++i) {
-    const VkQueueFlags flags = families[i].queueFlags;
-    if ((flags & VK_QUEUE_COMPUTE_BIT) && !compute) compute = i;
-    const bool works = flags & (VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT);
-    if ((flags & VK_QUEUE_TRANSFER_BIT) && !works && !transfer) transfer = i;
+/// Families of the queue for everything that is needed and, if there is one that does nothing else, of the
+/// queue for copies.
+std::vector<uint32_t> chooseFamilies(const std::vector<VkQueueFlags>& queues, VkQueueFlags needed) {
+  std::optional<uint32_t> all, transfer;
+  for (uint32_t i = 0; i < queues.size(); ++i) {
+    if ((queues[i] & needed) == needed && !all) all = i;
+    const bool works = queues[i] & (VK_QUEUE_COMPUTE_BIT | VK_QUEUE_GRAPHICS_BIT);
+    if ((queues[i] & VK_QUEUE_TRANSFER_BIT) && !works && !transfer) transfer = i;
   }
-  if (!compute) throw Error("the Vulkan device has no queue for compute shaders");
-  if (!transfer) return {*compute};
-  return {*compute, *transfer};
-}
-
-bool hasGraphics(const VulkanApi& api, VkPhysicalDevice device, uint32_t family) {
-  uint32_t count = 0;
-  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  return families[family].queueFlags & VK_QUEUE_GRAPHICS_BIT;
+  if (!transfer) return {all.value()};
+  return {all.value(), *transfer};
 }
 
 }  // namespace
@@ -70,27 +57,16 @@ VulkanMemoryBlock::~VulkanMemoryBlock() {
   if (total_) *total_ -= bytes_;
 }
 
-VulkanContext::VulkanContext(const std::string& selector, bool ray_queries, uint64_t memory_budget)
-    : api_(VulkanInstance::get().api()), choice_(selectVulkanDevice(selector)) {
-  const VulkanAbilities& abilities = choice_.abilities;
-  uses_pipelines_ = abilities.pipelines && !ray_queries;
-  if (ray_queries && !abilities.ray_queries) {
-    throw Error(fmt::format("device \"{}\" ({}) has no ray queries (VK_KHR_ray_query)", choice_.info.id,
-                            choice_.info.name));
-  }
-  choice_.info.layout = vulkanLayout(uses_pipelines_);
-  families_ = chooseFamilies(api_, choice_.physical);
-  const std::string lacking = !hasGraphics(api_, choice_.physical, families_.front())
-                                  ? "no queue for graphics"
-                              : !abilities.multiview      ? "no images of several views (multiview)"
-                              : !abilities.clip_distances ? "no clip distances in shaders"
-                              : !abilities.multi_draw     ? "no lists of draws (multiDrawIndirect)"
-                                                          : "";
-  why_no_raster_ = lacking;
+VulkanContext::VulkanContext(const std::string& selector, const VulkanNeeds& needs, uint64_t memory_budget)
+    : api_(VulkanInstance::get().api()),
+      choice_(selectVulkanDevice(selector, needs)),
+      shaders_(needs.shaders),
+      features_(featuresFor(choice_.abilities, needs)),
+      families_(chooseFamilies(choice_.abilities.queues, needs.queue)) {
   api_.vkGetPhysicalDeviceMemoryProperties(choice_.physical, &memory_);
   readLimits();
   memory_limit_ = memory_budget > 0 ? std::min(memory_budget, info().memory_bytes) : info().memory_bytes;
-  createDevice();
+  createDevice(needs);
 }
 
 VulkanContext::~VulkanContext() {
@@ -99,33 +75,21 @@ VulkanContext::~VulkanContext() {
   api_.vkDestroyDevice(device_, nullptr);
 }
 
-void VulkanContext::createDevice() {
-  auto queries =
-      vkStruct<VkPhysicalDeviceRayQueryFeaturesKHR>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR);
-  queries.rayQuery = VK_TRUE;
-  auto pipelines = vkStruct<VkPhysicalDeviceRayTracingPipelineFeaturesKHR>(
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR);
-  pipelines.rayTracingPipeline = VK_TRUE;
-  auto structures = vkStruct<VkPhysicalDeviceAccelerationStructureFeaturesKHR>(
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR);
-  structures.accelerationStructure = VK_TRUE;
-  structures.pNext = uses_pipelines_ ? static_cast<void*>(&pipelines) : &queries;
-  auto views =
-      vkStruct<VkPhysicalDeviceVulkan11Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES);
-  views.multiview = why_no_raster_.empty();
-  views.pNext = &structures;
-  auto core =
-      vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
-  core.bufferDeviceAddress = core.scalarBlockLayout = VK_TRUE;
-  core.pNext = &views;
-  auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
-  features.features.shaderInt64 = features.features.shaderFloat64 = VK_TRUE;
-  features.features.shaderClipDistance = features.features.multiDrawIndirect = why_no_raster_.empty();
-  features.pNext = &core;
+std::span<const uint32_t> VulkanContext::shader(const std::string& name) const {
+  if (shaders_ == nullptr) throw Error(fmt::format("no shader {}: the context has no program", name));
+  return shaders_(name);
+}
 
-  const char* extensions[] = {
-      VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME,
-      uses_pipelines_ ? VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME : VK_KHR_RAY_QUERY_EXTENSION_NAME};
+void VulkanContext::createDevice(const VulkanNeeds& needs) {
+  std::set<std::string, std::less<>> names(needs.extensions.begin(), needs.extensions.end());
+  for (const VulkanFeature feature : features_) {
+    const auto its = extensionsOf(feature);
+    names.insert(its.begin(), its.end());
+  }
+  std::vector<const char*> extensions;
+  for (const std::string& name : names) extensions.push_back(name.c_str());
+  VulkanFeatureChain chain(names);
+  for (const VulkanFeature feature : features_) chain.at(feature) = VK_TRUE;
   const float priority = 1;
   std::vector<VkDeviceQueueCreateInfo> queues;
   for (const uint32_t family : families_) {
@@ -136,13 +100,13 @@ void VulkanContext::createDevice() {
     queues.push_back(queue);
   }
   auto info = vkStruct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
-  info.pNext = &features;
+  info.pNext = &chain.first();
   info.queueCreateInfoCount = static_cast<uint32_t>(queues.size());
   info.pQueueCreateInfos = queues.data();
-  info.enabledExtensionCount = static_cast<uint32_t>(std::size(extensions));
-  info.ppEnabledExtensionNames = extensions;
+  info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
+  info.ppEnabledExtensionNames = extensions.data();
   checkVk(api_.vkCreateDevice(choice_.physical, &info, nullptr, &device_), "vkCreateDevice");
-  api_.loadDevice(device_, uses_pipelines_);
+  api_.loadDevice(device_, has(VulkanFeature::kStructures), has(VulkanFeature::kPipelines));
   api_.vkGetDeviceQueue(device_, families_.front(), 0, &queue_);
   api_.vkGetDeviceQueue(device_, families_.back(), 0, &transfer_queue_);
 }
@@ -152,10 +116,10 @@ void VulkanContext::readLimits() {
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_PROPERTIES_KHR);
   auto structures = vkStruct<VkPhysicalDeviceAccelerationStructurePropertiesKHR>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR);
-  if (uses_pipelines_) structures.pNext = &pipelines;
   auto maintenance = vkStruct<VkPhysicalDeviceMaintenance3Properties>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES);
-  maintenance.pNext = &structures;
+  if (has(VulkanFeature::kStructures)) maintenance.pNext = &structures;
+  if (has(VulkanFeature::kPipelines)) pipelines.pNext = std::exchange(maintenance.pNext, &pipelines);
   auto properties = vkStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
   properties.pNext = &maintenance;
   api_.vkGetPhysicalDeviceProperties2(choice_.physical, &properties);
@@ -207,7 +171,8 @@ VulkanMemoryBlock VulkanContext::allocate(uint64_t bytes, const VkMemoryRequirem
   auto flags = vkStruct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
   flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
   auto allocate = vkStruct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-  if (memory == VulkanMemory::kDevice) allocate.pNext = &flags;
+  const bool addressed = memory == VulkanMemory::kDevice && has(VulkanFeature::kAddresses);
+  if (addressed) allocate.pNext = &flags;
   allocate.allocationSize = requirements.size;
   allocate.memoryTypeIndex = memoryType(requirements.memoryTypeBits, memory);
   // Drivers on the processor promise more memory than there is.
@@ -239,11 +204,13 @@ VulkanBuffer VulkanContext::buffer(uint64_t bytes, const VulkanMemoryUse& use, V
   info.size = bytes;
   info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   if (memory == VulkanMemory::kDevice) {
-    info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT |
-                  VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
-                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR |
-                  VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
-    if (uses_pipelines_) info.usage |= VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR;
+    info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+    if (has(VulkanFeature::kAddresses)) info.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
+    if (has(VulkanFeature::kStructures)) {
+      info.usage |= VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR |
+                    VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_BUILD_INPUT_READ_ONLY_BIT_KHR;
+    }
+    if (has(VulkanFeature::kPipelines)) info.usage |= VK_BUFFER_USAGE_SHADER_BINDING_TABLE_BIT_KHR;
   }
   if (families_.size() > 1) {
     info.sharingMode = VK_SHARING_MODE_CONCURRENT;
@@ -260,13 +227,13 @@ VulkanBuffer VulkanContext::buffer(uint64_t bytes, const VulkanMemoryUse& use, V
   api_.vkGetBufferMemoryRequirements(device_, handle, &requirements);
   result.memory_ = allocate(bytes, requirements, memory, use);
   checkVk(api_.vkBindBufferMemory(device_, handle, result.memory_.get(), 0), "vkBindBufferMemory");
-  if (memory == VulkanMemory::kDevice) {
+  if (memory != VulkanMemory::kDevice) {
+    checkVk(api_.vkMapMemory(device_, result.memory_.get(), 0, VK_WHOLE_SIZE, 0, &result.mapped_),
+            "vkMapMemory");
+  } else if (has(VulkanFeature::kAddresses)) {
     auto of = vkStruct<VkBufferDeviceAddressInfo>(VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO);
     of.buffer = handle;
     result.address_ = api_.vkGetBufferDeviceAddress(device_, &of);
-  } else {
-    checkVk(api_.vkMapMemory(device_, result.memory_.get(), 0, VK_WHOLE_SIZE, 0, &result.mapped_),
-            "vkMapMemory");
   }
   result.bytes_ = bytes;
   return result;

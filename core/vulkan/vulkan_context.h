@@ -78,7 +78,7 @@ class VulkanBuffer {
   VulkanBuffer& operator=(VulkanBuffer&& other) noexcept;
   VkBuffer get() const { return buffer_.get(); }
   uint64_t bytes() const { return bytes_; }
-  /// For shaders and for the building of acceleration structures.
+  /// For shaders and for the building of acceleration structures; 0 without VulkanFeature::kAddresses.
   VkDeviceAddress address() const { return address_; }
   /// kUpload and kReadback only; coherent.
   void* mapped() const { return mapped_; }
@@ -108,9 +108,9 @@ struct VulkanLimits {
 /// A device with its queues. Not thread-safe. Everything throws Error with the name of the call that failed.
 class VulkanContext {
  public:
-  /// selector: as of selectVulkanDevice. ray_queries: use them even where there are ray tracing pipelines.
-  /// memory_budget: bytes that all buffers may take; 0: what the device has.
-  VulkanContext(const std::string& selector, bool ray_queries, uint64_t memory_budget = 0);
+  /// selector: as of selectVulkanDevice. memory_budget: bytes that all buffers may take; 0: what the device
+  /// has.
+  VulkanContext(const std::string& selector, const VulkanNeeds& needs, uint64_t memory_budget = 0);
   VulkanContext(const VulkanContext&) = delete;
   VulkanContext& operator=(const VulkanContext&) = delete;
   ~VulkanContext();
@@ -119,9 +119,11 @@ class VulkanContext {
   VkDevice device() const { return device_; }
   const DeviceInfo& info() const { return choice_.info; }
   const VulkanLimits& limits() const { return limits_; }
-  bool usesPipelines() const { return uses_pipelines_; }
-  /// Why it cannot rasterise (queue(), several views at once), in a few words; empty: it can.
-  const std::string& whyNoRaster() const { return why_no_raster_; }
+  const VulkanAbilities& abilities() const { return choice_.abilities; }
+  /// Whether the feature is on.
+  bool has(VulkanFeature feature) const { return features_.contains(feature); }
+  /// SPIR-V of a shader of the program. Throws Error where it has none of this name.
+  std::span<const uint32_t> shader(const std::string& name) const;
   uint64_t allocatedBytes() const { return *allocated_; }
   /// Whether a buffer of this size is within the limits.
   bool fits(uint64_t bytes) const {
@@ -130,6 +132,8 @@ class VulkanContext {
 
   VkQueue queue() const { return queue_; }
   uint32_t queueFamily() const { return families_.front(); }
+  /// What queue() can do.
+  VkQueueFlags queueFlags() const { return choice_.abilities.queues[families_.front()]; }
   /// A queue of a family that only copies, where there is one, else the same as queue().
   VkQueue transferQueue() const { return transfer_queue_; }
   uint32_t transferFamily() const { return families_.back(); }
@@ -142,15 +146,15 @@ class VulkanContext {
                       VulkanMemory memory = VulkanMemory::kDevice) const;
 
  private:
-  void createDevice();
+  void createDevice(const VulkanNeeds& needs);
   void requireOneAllocation(uint64_t bytes, const VulkanMemoryUse& use) const;
   void readLimits();
   uint32_t memoryType(uint32_t allowed, VulkanMemory memory) const;
 
   VulkanApi api_;
   VulkanDeviceChoice choice_;
-  bool uses_pipelines_;
-  std::string why_no_raster_;
+  VulkanShaders shaders_;
+  std::set<VulkanFeature> features_;
   VkPhysicalDeviceMemoryProperties memory_{};
   VulkanLimits limits_;
   uint64_t memory_limit_ = 0;       ///< bytes that all buffers may take

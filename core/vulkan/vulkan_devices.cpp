@@ -2,15 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <utility>
-
 #include "core/base/error.h"
 #include "core/trace/select_device.h"
 
 namespace sightline {
 namespace {
 
-std::set<std::string, std::less<>> extensionsOf(const VulkanApi& api, VkPhysicalDevice device) {
+std::set<std::string, std::less<>> readExtensions(const VulkanApi& api, VkPhysicalDevice device) {
   uint32_t count = 0;
   checkVk(api.vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr),
           "vkEnumerateDeviceExtensionProperties");
@@ -26,42 +24,23 @@ VulkanAbilities abilitiesOf(const VulkanApi& api, VkPhysicalDevice device, uint3
   VulkanAbilities abilities;
   abilities.version = version;
   if (version < VK_API_VERSION_1_2) return abilities;
-  abilities.extensions = extensionsOf(api, device);
-  auto queries =
-      vkStruct<VkPhysicalDeviceRayQueryFeaturesKHR>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR);
-  auto pipelines = vkStruct<VkPhysicalDeviceRayTracingPipelineFeaturesKHR>(
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR);
-  auto structures = vkStruct<VkPhysicalDeviceAccelerationStructureFeaturesKHR>(
-      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_FEATURES_KHR);
-  auto views =
-      vkStruct<VkPhysicalDeviceVulkan11Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES);
-  auto core =
-      vkStruct<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
-  core.pNext = &views;
-  auto features = vkStruct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
-  // Only structs of extensions that are there may be asked for.
-  const auto ask = [&](auto& extension, const char* name) {
-    if (abilities.extensions.contains(name)) extension.pNext = std::exchange(core.pNext, &extension);
-  };
-  ask(queries, VK_KHR_RAY_QUERY_EXTENSION_NAME);
-  ask(pipelines, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
-  ask(structures, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
-  features.pNext = &core;
-  api.vkGetPhysicalDeviceFeatures2(device, &features);
-  abilities.structures = structures.accelerationStructure;
-  abilities.pipelines = pipelines.rayTracingPipeline;
-  abilities.ray_queries = queries.rayQuery;
-  abilities.addresses = core.bufferDeviceAddress;
-  abilities.scalar_layout = core.scalarBlockLayout;
-  abilities.int64 = features.features.shaderInt64;
-  abilities.float64 = features.features.shaderFloat64;
-  abilities.multiview = views.multiview;
-  abilities.multi_draw = features.features.multiDrawIndirect;
-  abilities.clip_distances = features.features.shaderClipDistance;
+  abilities.extensions = readExtensions(api, device);
+  VulkanFeatureChain chain(abilities.extensions);
+  api.vkGetPhysicalDeviceFeatures2(device, &chain.first());
+  for (uint32_t i = 0; i < kVulkanFeatures; ++i) {
+    const auto feature = VulkanFeature(i);
+    if (chain.at(feature)) abilities.features.insert(feature);
+  }
+  uint32_t count = 0;
+  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
+  for (const VkQueueFamilyProperties& family : families) abilities.queues.push_back(family.queueFlags);
   return abilities;
 }
 
-VulkanDeviceChoice describe(const VulkanApi& api, VkPhysicalDevice physical, size_t index) {
+VulkanDeviceChoice describe(const VulkanApi& api, VkPhysicalDevice physical, size_t index,
+                            const VulkanNeeds& needs) {
   VulkanDeviceChoice device;
   device.physical = physical;
   device.info.id = fmt::format("vulkan:{}", index);
@@ -86,11 +65,10 @@ VulkanDeviceChoice describe(const VulkanApi& api, VkPhysicalDevice physical, siz
   }
   try {
     device.abilities = abilitiesOf(api, physical, version);
-    device.info.unusable = whyUnusable(device.abilities);
+    device.info.unusable = whyUnusable(device.abilities, needs);
   } catch (const Error& error) {
     device.info.unusable = error.what();
   }
-  device.info.layout = vulkanLayout(device.abilities.pipelines);
   return device;
 }
 
@@ -109,31 +87,7 @@ int rank(const VulkanDeviceChoice& device) {
 
 }  // namespace
 
-std::string whyUnusable(const VulkanAbilities& abilities) {
-  if (abilities.version < VK_API_VERSION_1_2) {
-    return fmt::format("its driver knows Vulkan {}.{}, 1.2 is needed",
-                       VK_API_VERSION_MAJOR(abilities.version), VK_API_VERSION_MINOR(abilities.version));
-  }
-  for (const char* name :
-       {VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME, VK_KHR_DEFERRED_HOST_OPERATIONS_EXTENSION_NAME}) {
-    if (!abilities.extensions.contains(name)) return fmt::format("no ray tracing: its driver lacks {}", name);
-  }
-  if (!abilities.structures) return "no ray tracing: its driver has accelerationStructure off";
-  if (!abilities.pipelines && !abilities.ray_queries) {
-    return "no ray tracing: its driver has neither VK_KHR_ray_tracing_pipeline nor VK_KHR_ray_query";
-  }
-  if (!abilities.addresses) return "no addresses of buffers in shaders (bufferDeviceAddress)";
-  if (!abilities.scalar_layout) return "no scalar layout of buffers (scalarBlockLayout)";
-  if (!abilities.int64) return "no 64-bit integers in shaders (shaderInt64)";
-  if (!abilities.float64) return "no 64-bit floats in shaders (shaderFloat64)";
-  return {};
-}
-
-std::string vulkanLayout(bool pipelines) {
-  return pipelines ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
-}
-
-std::vector<VulkanDeviceChoice> findVulkanDevices() {
+std::vector<VulkanDeviceChoice> findVulkanDevices(const VulkanNeeds& needs) {
   const VulkanInstance& instance = VulkanInstance::get();
   const VulkanApi& api = instance.api();
   uint32_t count = 0;
@@ -142,28 +96,14 @@ std::vector<VulkanDeviceChoice> findVulkanDevices() {
   checkVk(api.vkEnumeratePhysicalDevices(instance.handle(), &count, handles.data()),
           "vkEnumeratePhysicalDevices");
   std::vector<VulkanDeviceChoice> devices;
-  for (VkPhysicalDevice handle : handles) devices.push_back(describe(api, handle, devices.size()));
+  for (VkPhysicalDevice handle : handles) devices.push_back(describe(api, handle, devices.size(), needs));
   return devices;
 }
 
-VulkanDeviceChoice selectVulkanDevice(const std::string& selector) {
+VulkanDeviceChoice selectVulkanDevice(const std::string& selector, const VulkanNeeds& needs) {
   return selectDevice(
-      selector, "vulkan", findVulkanDevices(), rank,
+      selector, "vulkan", findVulkanDevices(needs), rank,
       "no Vulkan device found: install a driver with ray tracing, or use the devices cpu or opencl");
-}
-
-std::vector<DeviceInfo> listVulkanDevices() {
-  std::vector<DeviceInfo> list;
-  try {
-    for (VulkanDeviceChoice& device : findVulkanDevices()) list.push_back(std::move(device.info));
-  } catch (const Error& error) {
-    DeviceInfo none;
-    none.id = "vulkan";
-    none.name = "none found";
-    none.unusable = error.what();
-    list.push_back(none);
-  }
-  return list;
 }
 
 }  // namespace sightline

@@ -5,7 +5,6 @@
 
 #include "core/shared/counters.h"
 #include "core/vulkan/vulkan_commands.h"
-#include "vk_shaders/shaders.h"
 
 namespace sightline {
 namespace {
@@ -28,7 +27,7 @@ uint64_t alignUp(uint64_t value, uint64_t alignment) {
 }  // namespace
 
 VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name) {
-  const std::span<const uint32_t> code = shaderCode(name);
+  const std::span<const uint32_t> code = context.shader(name);
   auto info = vkStruct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
   info.codeSize = code.size_bytes();
   info.pCode = code.data();
@@ -65,24 +64,24 @@ void destroyPipeline(const VulkanContext& context, VkPipeline pipeline) {
   context.api().vkDestroyPipeline(context.device(), pipeline, nullptr);
 }
 
-VulkanStage VulkanStage::tracing(const VulkanContext& context, const std::string& name, uint32_t group_size) {
+VulkanStage VulkanStage::compute(const VulkanContext& context, const std::string& name, uint32_t group_size) {
   VulkanStage stage;
   stage.context_ = &context;
-  if (context.usesPipelines()) {
-    stage.createLayout(VK_SHADER_STAGE_RAYGEN_BIT_KHR);
-    stage.createRayPipeline(name + ".rgen");
-  } else {
-    stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
-    stage.createPipeline(name + ".comp", group_size);
-  }
+  stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
+  stage.createPipeline(name, group_size);
   return stage;
 }
 
 VulkanStage VulkanStage::list(const VulkanContext& context, const std::string& name) {
+  return compute(context, name + ".comp", SL_LIST_GROUP);
+}
+
+VulkanStage VulkanStage::rays(const VulkanContext& context, const std::string& generation,
+                              const std::string& miss, const std::string& hit) {
   VulkanStage stage;
   stage.context_ = &context;
-  stage.createLayout(VK_SHADER_STAGE_COMPUTE_BIT);
-  stage.createPipeline(name + ".comp", SL_LIST_GROUP);
+  stage.createLayout(VK_SHADER_STAGE_RAYGEN_BIT_KHR);
+  stage.createRayPipeline(generation, miss, hit);
   return stage;
 }
 
@@ -102,11 +101,12 @@ void VulkanStage::createPipeline(const std::string& name, uint32_t group_size) {
   pipeline_ = {*context_, pipeline, destroyPipeline};
 }
 
-void VulkanStage::createRayPipeline(const std::string& name) {
+void VulkanStage::createRayPipeline(const std::string& generation_name, const std::string& miss_name,
+                                    const std::string& hit_name) {
   const VulkanApi& api = context_->api();
-  const VulkanHandle<VkShaderModule> generation = shaderModule(*context_, name);
-  const VulkanHandle<VkShaderModule> miss = shaderModule(*context_, "nothing.rmiss");
-  const VulkanHandle<VkShaderModule> hit = shaderModule(*context_, "nearest.rchit");
+  const VulkanHandle<VkShaderModule> generation = shaderModule(*context_, generation_name);
+  const VulkanHandle<VkShaderModule> miss = shaderModule(*context_, miss_name);
+  const VulkanHandle<VkShaderModule> hit = shaderModule(*context_, hit_name);
   const VkPipelineShaderStageCreateInfo stages[] = {
       stageInfo(VK_SHADER_STAGE_RAYGEN_BIT_KHR, generation.get()),
       stageInfo(VK_SHADER_STAGE_MISS_BIT_KHR, miss.get()),
@@ -125,7 +125,7 @@ void VulkanStage::createRayPipeline(const std::string& name) {
   VkPipeline pipeline = VK_NULL_HANDLE;
   checkVk(api.vkCreateRayTracingPipelinesKHR(context_->device(), VK_NULL_HANDLE, VK_NULL_HANDLE, 1, &info,
                                              nullptr, &pipeline),
-          ("vkCreateRayTracingPipelinesKHR " + name).c_str());
+          ("vkCreateRayTracingPipelinesKHR " + generation_name).c_str());
   pipeline_ = {*context_, pipeline, destroyPipeline};
 
   // The table: one record a group, each at a multiple of the base alignment.

@@ -2,12 +2,12 @@
 #include <cstdint>
 #include <string>
 
+#include "core/shared/vulkan_push.h"
 #include "core/vulkan/vulkan_context.h"
-#include "vk_shaders/push.h"
 
 namespace sightline {
 
-/// The embedded shader of this name. Throws Error.
+/// The shader of this name of the context's program. Throws Error.
 VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name);
 /// Its main function as a stage.
 VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderModule module);
@@ -19,13 +19,16 @@ void destroyPipeline(const VulkanContext& context, VkPipeline pipeline);
 class VulkanStage {
  public:
   VulkanStage() = default;
-  /// A tracing stage (trace_random, ...) of the context's kind. group_size: of ray queries.
-  static VulkanStage tracing(const VulkanContext& context, const std::string& name, uint32_t group_size);
-  /// A compute shader ("count_bits") with groups of SL_LIST_GROUP.
+  /// A compute shader ("count_bits.comp"). group_size: work items, its constant 0.
+  static VulkanStage compute(const VulkanContext& context, const std::string& name, uint32_t group_size);
+  /// The same of shader "NAME.comp" with groups of SL_LIST_GROUP.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
+  /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each.
+  static VulkanStage rays(const VulkanContext& context, const std::string& generation,
+                          const std::string& miss, const std::string& hit);
 
   /// Records the dispatch of the items 0 .. count - 1, in pieces that the device takes.
-  /// launch: address of the VulkanLaunch.
+  /// launch: of VulkanPush.
   void record(VkCommandBuffer commands, VkDeviceAddress launch, uint32_t count) const;
 
  private:
@@ -34,7 +37,7 @@ class VulkanStage {
     layout_ = pushLayout(*context_, stages);
   }
   void createPipeline(const std::string& name, uint32_t group_size);
-  void createRayPipeline(const std::string& name);
+  void createRayPipeline(const std::string& generation, const std::string& miss, const std::string& hit);
 
   const VulkanContext* context_ = nullptr;
   VkShaderStageFlags stages_ = 0;

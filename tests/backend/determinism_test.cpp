@@ -1,5 +1,6 @@
 // The same PVS with the same witnesses, bit for bit, however it is computed.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
@@ -54,6 +55,7 @@ TEST_P(Determinism, ReferenceIsWorthComparing) {
 }
 
 TEST_P(Determinism, AnyThreadCount) {
+  const tbb::global_control more(tbb::global_control::max_allowed_parallelism, 7);  // than cores
   for (const int threads : {1, 2, 7}) {
     DeviceOptions options;
     options.threads = threads;

@@ -13,6 +13,7 @@
 #include <iterator>
 
 #include "bvh/bvh.h"
+#include "core/device/vulkan/tracing_needs.h"
 #include "core/device/vulkan/vulkan_runner.h"
 #include "core/shared/border.h"
 #include "core/shared/reverse.h"
@@ -282,7 +283,7 @@ std::vector<uint32_t> runShader(const VulkanContext& context, const std::vector<
 
 TEST(VulkanLayout, ShadersWriteFieldsWhereCppHasThem) {
   SL_SKIP_WITHOUT_VULKAN();
-  const VulkanContext context("vulkan", false);
+  const VulkanContext context("vulkan", tracingNeeds(false));
   const TemporaryFolder folder;
   std::vector<Layout> layouts = sharedLayouts();
   layouts.push_back(vulkanLayout());

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/device/opencl/opencl_scene.h"
 #include "core/opencl/opencl_devices.h"
 
 namespace sightline {
@@ -91,7 +92,7 @@ TEST_F(OpenCl, CountsTheBytesOfItsBuffers) {
 TEST_F(OpenCl, AFailedBuildShowsItsLog) {
   OpenClContext context("opencl");
   try {
-    context.build("-DSL_PACKET=nonsense");
+    buildKernels(context, 1, "-Dfloat=nonsense");
     FAIL() << "expected an Error";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("nonsense"), std::string::npos);
@@ -100,10 +101,24 @@ TEST_F(OpenCl, AFailedBuildShowsItsLog) {
 }
 
 TEST_F(OpenCl, BuildsWithoutAWarning) {  // PoCL counts them on the user's terminal
-  for (const char* variant : {"-Werror -DSL_PACKET=1", "-Werror -DSL_PACKET=8"}) {
+  for (const uint32_t rays_per_item : {1u, 8u}) {
     OpenClContext context("opencl");
-    EXPECT_NO_THROW(context.build(variant)) << variant;
+    EXPECT_NO_THROW(buildKernels(context, rays_per_item, "-Werror")) << rays_per_item;
   }
+}
+
+TEST_F(OpenCl, RunsAnyProgram) {
+  OpenClContext context("opencl");
+  context.build(
+      "kernel void fillSquares(global uint* out) {\n"
+      "  out[get_global_id(0)] = SL_START + get_global_id(0) * get_global_id(0);\n"
+      "}\n",
+      "-cl-std=CL1.2 -Werror -DSL_START=5");
+  const ClBuffer out = context.buffer(100 * 4, "squares");
+  context.launch(context.kernel("fillSquares"), 100, 10, out);
+  uint32_t squares[100] = {};
+  context.read(out, squares, sizeof squares);
+  for (uint32_t i = 0; i < 100; ++i) EXPECT_EQ(squares[i], 5 + i * i);
 }
 
 TEST_F(OpenCl, BytesComeBackAsWritten) {

@@ -18,7 +18,7 @@ class OpenClTrace : public testing::TestWithParam<uint32_t> {
   void SetUp() override {
     if (listOpenClDevices().empty()) GTEST_SKIP() << "no OpenCL device";
     context_ = std::make_unique<OpenClContext>("opencl");
-    context_->build(traceOptions(GetParam()));
+    buildKernels(*context_, GetParam());
   }
 
   std::vector<Hit> trace(const OpenClScene& scene, const std::vector<Ray>& rays, uint32_t local) {

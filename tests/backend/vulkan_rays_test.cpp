@@ -4,6 +4,7 @@
 #include <cstring>
 #include <numeric>
 
+#include "core/device/vulkan/tracing_needs.h"
 #include "core/device/vulkan/vulkan_runner.h"
 #include "core/device/vulkan/vulkan_scene.h"
 #include "core/generate/generate.h"
@@ -31,7 +32,7 @@ class VulkanRays : public testing::Test {
  protected:
   void SetUp() override {
     SL_SKIP_WITHOUT_VULKAN();
-    context_ = std::make_unique<VulkanContext>("vulkan", false);
+    context_ = std::make_unique<VulkanContext>("vulkan", tracingNeeds(false));
     runner_ = std::make_unique<VulkanRunner>(*context_);
     on_device_ = uploadVulkanScene(*context_, scene_, bvh_, 0);
     on_device_.describe(*runner_);

@@ -132,7 +132,7 @@ testing::AssertionResult reachesTheMesh(const Hit& hit, const Ray& ray, const Pl
 void traceOnOpenCl(const Scene& mesh, uint32_t per_item) {
   if (listOpenClDevices().empty()) GTEST_SKIP() << "no OpenCL device";
   OpenClContext context("opencl");
-  context.build(traceOptions(per_item));
+  buildKernels(context, per_item);
   const ClKernel kernel = context.kernel("traceRaysKernel");
   std::vector<Ray> rays(kRays);
   std::vector<Hit> hits(kRays);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/cli/number_checks.h"
+#include "core/device/vulkan/tracing_needs.h"
 #include "core/vulkan/vulkan_commands.h"
 #include "tests/bench/bench_main.h"
 
@@ -106,7 +107,7 @@ void benchWaiting(const VulkanContext& context, int runs) {
 }
 
 void bench(const std::string& device, int runs) {
-  const VulkanContext context(device, false);
+  const VulkanContext context(device, tracingNeeds(false));
   fmt::print("{} ({}; {})\n", context.info().id, context.info().name, context.info().driver);
   benchUploads(context, runs);
   benchReadback(context, runs);

@@ -60,7 +60,7 @@ inline Contestant cpuContestant(const Workload& work) {
 /// Everything that the OpenCL contestant keeps on the device.
 struct OpenClState {
   explicit OpenClState(const Workload& work, const std::string& device) : context(device) {
-    context.build(traceOptions(raysPerItem(context)));
+    buildKernels(context, raysPerItem(context));
     scene = uploadScene(context, work.scene, work.bvh, raysPerItem(context));
     segment_kernel = context.kernel("traceSegmentKernel");
     rays_kernel = context.kernel("traceRaysKernel");

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/device/vulkan/tracing_needs.h"
 #include "core/device/vulkan/vulkan_runner.h"
 #include "core/device/vulkan/vulkan_scene.h"
 #include "core/sampling/random_segment.h"
@@ -13,11 +14,11 @@ namespace sightline {
 class VulkanTracer {
  public:
   VulkanTracer(const std::string& device, const Scene& scene, const Bvh& bvh, uvec4 shifts)
-      : context_(device, false),
+      : context_(device, tracingNeeds(false)),
         runner_(context_),
         scene_(uploadVulkanScene(context_, scene, bvh, 0)),
-        slots_stage_(VulkanStage::tracing(context_, "trace_slots", 64)),
-        rays_stage_(VulkanStage::tracing(context_, "trace_rays", 64)) {
+        slots_stage_(tracingStage(context_, "trace_slots", 64)),
+        rays_stage_(tracingStage(context_, "trace_rays", 64)) {
     scene_.describe(runner_);
     runner_.launch.numbers.shifts = shifts;
   }
@@ -44,17 +45,17 @@ class VulkanTracer {
 
   void traceSegments() {
     for (const Segment& segment : segments_) {
-      runner_.launch.numbers.segment = segment.segment;
-      runner_.bind(StageBuffer::faces, segment.face);
-      runner_.bind(StageBuffer::hits, segment.hits);
+      runner_.launch.segment = segment.segment;
+      runner_.launch.faces = segment.face.address();
+      runner_.launch.hits = segment.hits.address();
       runner_.run(slots_stage_, static_cast<uint32_t>(slotCount(segment.segment)));
     }
     runner_.commands.finish();
   }
 
   void traceRays() {
-    runner_.bind(StageBuffer::rays, rays_);
-    runner_.bind(StageBuffer::hits, ray_hits_);
+    runner_.launch.rays = rays_.address();
+    runner_.launch.hits = ray_hits_.address();
     runner_.run(rays_stage_, ray_count_);
     runner_.commands.finish();
   }

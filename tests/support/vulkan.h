@@ -3,7 +3,7 @@
 
 #include <cstdlib>
 
-#include "core/vulkan/vulkan_devices.h"
+#include "core/device/vulkan/vulkan_device.h"
 
 namespace sightline::testing_support {
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -50,7 +49,6 @@ class CpuDevice final : public Device {
       : scene_(scene),
         bvh_(bvh),
         tracer_(scene, bvh),
-        workers_(tbb::global_control::max_allowed_parallelism, threadCount(options)),
         arena_(static_cast<int>(threadCount(options))),
         set_(static_cast<uint32_t>(scene.triangles.size()), wantsHash(options)) {
     const uint64_t bytes = residentBytes() + set_.bytes();
@@ -276,7 +274,6 @@ class CpuDevice final : public Device {
   const Scene& scene_;
   const Bvh& bvh_;
   CpuTracer tracer_;
-  tbb::global_control workers_;  ///< lets the arena have more threads than cores
   tbb::task_arena arena_;
   HostSet set_;
   std::vector<Face> faces_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "cl_kernels/program_source.h"
 #include "core/shared/box.h"
 #include "core/trace/trace_layout.h"
 
@@ -41,8 +42,9 @@ uint32_t raysPerItem(const OpenClContext& context) {
   return context.isCpu() ? 8 : 1;
 }
 
-std::string traceOptions(uint32_t rays_per_item) {
-  return "-DSL_PACKET=" + std::to_string(rays_per_item);
+void buildKernels(OpenClContext& context, uint32_t rays_per_item, const std::string& extra) {
+  context.build(kProgramSource, "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DSL_PACKET=" +
+                                    std::to_string(rays_per_item) + " " + extra);
 }
 
 OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t rays_per_item,

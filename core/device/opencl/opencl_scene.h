@@ -19,12 +19,12 @@ struct OpenClScene {
 /// Rays that a work item traces where the device is fastest: packets of 8 on CPUs, 1 elsewhere.
 uint32_t raysPerItem(const OpenClContext& context);
 
-/// Build options that the trace kernels need: pass to OpenClContext::build, with others. rays_per_item: 8
-/// or 1.
-std::string traceOptions(uint32_t rays_per_item);
+/// Builds our kernels (cl_kernels/program.cl) to trace so many rays a work item, 8 or 1. extra: further
+/// options of the compiler. Throws Error.
+void buildKernels(OpenClContext& context, uint32_t rays_per_item, const std::string& extra = {});
 
 /// Uploads in pieces, so that the host needs little memory besides scene and tree. rays_per_item: as of
-/// traceOptions. id_offset is for tests: 2^24 + 1, say, added to all ids. Throws Error, also when the tree is
+/// buildKernels. id_offset is for tests: 2^24 + 1, say, added to all ids. Throws Error, also when the tree is
 /// too deep or the device's memory too small.
 OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t rays_per_item,
                         uint32_t id_offset = 0);

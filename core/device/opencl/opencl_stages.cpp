@@ -12,7 +12,7 @@ OpenClStages::OpenClStages(const std::string& selector, const Scene& scene, cons
                            const DeviceOptions& options)
     : context_(selector), lanes_(options.rays_per_item > 0 ? options.rays_per_item : raysPerItem(context_)) {
   if (options.memory_budget_bytes > 0) context_.limitMemory(options.memory_budget_bytes);
-  context_.build(traceOptions(lanes_));
+  buildKernels(context_, lanes_);
   // Groups of 64 rays keep the cores of a CPU evenly busy and fill the smallest unit of a GPU.
   local_ = options.work_group_size > 0 ? options.work_group_size : std::max(1u, 64 / lanes_);
   for (uint32_t i = 0; i < kGpuStages; ++i) kernels_[i] = context_.kernel(kernelName(GpuStage(i)));

@@ -8,7 +8,6 @@
 #include "core/device/opencl/opencl_device.h"
 #include "core/device/vulkan/vulkan_device.h"
 #include "core/opencl/opencl_context.h"
-#include "core/vulkan/vulkan_devices.h"
 
 namespace sightline {
 
@@ -44,7 +43,7 @@ bool isDeviceName(const std::string& name) {
 
 DeviceInfo requireDevice(const std::string& name) {
   if (isOfKind(name, "opencl")) return requireOpenClDevice(name);
-  if (isOfKind(name, "vulkan")) return selectVulkanDevice(name).info;
+  if (isOfKind(name, "vulkan")) return requireVulkanDevice(name);
   if (name == kEmbree) return requireEmbree();
   if (name == "cpu") return cpuDeviceInfo();
   throwUnknown(name);

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/base/error.h"
 #include "core/device/gpu/gpu_sampler.h"
 #include "core/device/vulkan/vulkan_raster.h"
 #include "core/device/vulkan/vulkan_stages.h"
@@ -65,6 +66,27 @@ class VulkanDevice final : public GpuSampler<VulkanStages>, private HemicubeDraw
 std::unique_ptr<Device> makeVulkanDevice(const std::string& selector, const Scene& scene, const Bvh& bvh,
                                          const DeviceOptions& options) {
   return std::make_unique<VulkanDevice>(scene, options, selector, scene, bvh, options);
+}
+
+DeviceInfo requireVulkanDevice(const std::string& selector) {
+  return selectVulkanDevice(selector, tracingNeeds(false)).info;
+}
+
+std::vector<DeviceInfo> listVulkanDevices() {
+  std::vector<DeviceInfo> list;
+  try {
+    for (VulkanDeviceChoice& device : findVulkanDevices(tracingNeeds(false))) {
+      device.info.layout = vulkanLayout(device.abilities.features.contains(VulkanFeature::kPipelines));
+      list.push_back(std::move(device.info));
+    }
+  } catch (const Error& error) {
+    DeviceInfo none;
+    none.id = "vulkan";
+    none.name = "none found";
+    none.unusable = error.what();
+    list.push_back(none);
+  }
+  return list;
 }
 
 }  // namespace sightline

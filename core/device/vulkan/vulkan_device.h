@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "bvh/bvh.h"
 #include "core/device/device.h"
@@ -15,5 +16,12 @@ namespace sightline {
 /// needed afterwards. Throws Error.
 std::unique_ptr<Device> makeVulkanDevice(const std::string& selector, const Scene& scene, const Bvh& bvh,
                                          const DeviceOptions& options);
+
+/// The device that a selector (of selectVulkanDevice) means, which can trace. Throws Error.
+DeviceInfo requireVulkanDevice(const std::string& selector);
+
+/// For `sightline devices`: each with why it cannot trace, if it cannot; empty where there is no Vulkan
+/// loader or no driver. Never throws.
+std::vector<DeviceInfo> listVulkanDevices();
 
 }  // namespace sightline

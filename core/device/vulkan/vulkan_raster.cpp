@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/device/vulkan/tracing_needs.h"
 #include "core/vulkan/vulkan_stage.h"
 
 namespace sightline {
@@ -58,8 +59,8 @@ VulkanRaster::VulkanRaster(const VulkanContext& context, VulkanRunner& runner, u
                            uint32_t triangles)
     : context_(context), runner_(runner), resolution_(resolution) {
   const DeviceInfo& info = context.info();
-  if (!context.whyNoRaster().empty()) {
-    throw Error(fmt::format("{} ({}) cannot rasterise: {}", info.id, info.name, context.whyNoRaster()));
+  if (const std::string why = whyNoHemicubes(context); !why.empty()) {
+    throw Error(fmt::format("{} ({}) cannot rasterise: {}", info.id, info.name, why));
   }
   if (resolution > context.limits().image_side) {
     throw Error(

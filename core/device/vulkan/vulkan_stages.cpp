@@ -19,7 +19,7 @@ constexpr uint32_t kGroup = 64;
 
 VulkanStages::VulkanStages(const std::string& selector, const Scene& scene, const Bvh& bvh,
                            const DeviceOptions& options)
-    : context_(selector, options.ray_queries, options.memory_budget_bytes),
+    : context_(selector, tracingNeeds(options.ray_queries), options.memory_budget_bytes),
       runner_(context_),
       group_(options.work_group_size > 0 ? options.work_group_size : kGroup),
       scene_(uploadVulkanScene(context_, scene, bvh, options.part_triangles)) {
@@ -31,6 +31,7 @@ VulkanStages::VulkanStages(const std::string& selector, const Scene& scene, cons
 
 DeviceInfo VulkanStages::info() const {
   DeviceInfo info = context_.info();
+  info.layout = vulkanLayout(usesPipelines(context_));
   info.driver_tree_parts = static_cast<uint32_t>(scene_.tree.parts.size());
   info.driver_tree_bytes = scene_.tree.bytes;
   info.driver_tree_build_seconds = scene_.tree.build_seconds;
@@ -71,7 +72,7 @@ void VulkanStages::read(const VulkanBuffer& buffer, void* target, uint64_t bytes
 
 void VulkanStages::run(GpuStage stage, uint64_t count) {
   std::optional<VulkanStage>& made = stages_[uint32_t(stage)];
-  if (!made) made = VulkanStage::tracing(context_, shaderName(stage), group_);
+  if (!made) made = tracingStage(context_, shaderName(stage), group_);
   runner_.run(*made, static_cast<uint32_t>(count));
 }
 
