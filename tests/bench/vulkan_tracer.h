@@ -45,17 +45,17 @@ class VulkanTracer {
 
   void traceSegments() {
     for (const Segment& segment : segments_) {
-      runner_.launch.segment = segment.segment;
-      runner_.launch.faces = segment.face.address();
-      runner_.launch.hits = segment.hits.address();
+      runner_.launch.numbers.segment = segment.segment;
+      runner_.bind(StageBuffer::faces, segment.face);
+      runner_.bind(StageBuffer::hits, segment.hits);
       runner_.run(slots_stage_, static_cast<uint32_t>(slotCount(segment.segment)));
     }
     runner_.commands.finish();
   }
 
   void traceRays() {
-    runner_.launch.rays = rays_.address();
-    runner_.launch.hits = ray_hits_.address();
+    runner_.bind(StageBuffer::rays, rays_);
+    runner_.bind(StageBuffer::hits, ray_hits_);
     runner_.run(rays_stage_, ray_count_);
     runner_.commands.finish();
   }
