@@ -20,6 +20,9 @@ struct StackEntry {
 /// Each node on a path leaves at most seven siblings behind.
 constexpr uint32_t kStackSize = 7 * kMaxDepth + 8;
 
+/// Child of an empty slot (BvhNode8).
+constexpr uint32_t kNoChild = 0xffffffffu;
+
 /// The planes of a node's eight boxes that the ray meets first and last, by the sign of its direction.
 struct PlaneOffsets {
   int near_x, far_x, near_y, far_y, near_z, far_z;  ///< rows of eight floats from the node's start
@@ -96,7 +99,8 @@ Hit CpuTracer::trace(const Ray& ray) const {
     intersectChildren(node, box_ray, rows, best.t, children);
     const uint32_t bottom = size;
     for (int i = 0; i < 8; ++i) {
-      if (!(children.near_t[i] <= children.far_t[i])) continue;
+      // An empty slot is met by rays whose 1 / direction leaves the floats (core/shared/box.h).
+      if (!(children.near_t[i] <= children.far_t[i]) || node.child[i] == kNoChild) continue;
       uint32_t place = size++;  // the farthest deepest in the stack
       for (; place > bottom && stack[place - 1].near_t < children.near_t[i]; --place) {
         stack[place] = stack[place - 1];

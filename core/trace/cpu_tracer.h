@@ -19,7 +19,8 @@ class CpuTracer {
   /// The same from triangles already packed, in the order of bvh.references.
   CpuTracer(std::vector<TriangleRecord> triangles, const Bvh& bvh);
 
-  /// Smallest t, among equal t the lowest id. A direction of zero hits nothing.
+  /// Smallest t, among equal t the lowest id. A direction of zero hits nothing; where the
+  /// scene's reach / direction leaves 2^-60 .. 2^80, hits may be lost.
   Hit trace(const Ray& ray) const;
 
   /// hits[i] = trace(rays[i]), faster where rays next to each other go the same way.

@@ -92,7 +92,7 @@ TEST_F(OpenCl, CountsTheBytesOfItsBuffers) {
 TEST_F(OpenCl, AFailedBuildShowsItsLog) {
   OpenClContext context("opencl");
   try {
-    buildKernels(context, 1, "-Dfloat=nonsense");
+    context.build("kernel void spoilt() { nonsense; }", "-cl-std=CL1.2");
     FAIL() << "expected an Error";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("nonsense"), std::string::npos);

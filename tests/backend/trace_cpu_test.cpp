@@ -1,6 +1,7 @@
 // The software traversal against the triangle test alone, applied to every triangle.
 #include <gtest/gtest.h>
 
+#include "core/shared/vector.h"
 #include "core/trace/cpu_tracer.h"
 #include "tests/backend/trace_cases.h"
 
@@ -77,6 +78,19 @@ TEST(CpuTracer, ADirectionOfZeroHitsNothing) {
   const CpuTracer tracer(c.scene, bvh);
   EXPECT_EQ(tracer.trace({vec4(0), vec4(0)}).triangle, kNoTriangle);
   EXPECT_EQ(tracer.trace({vec4(0), vec4(-0.0f)}).triangle, kNoTriangle);
+}
+
+/// 1 / direction overflows: the boxes' distances are NaN, also those of empty slots, which lead nowhere.
+TEST(CpuTracer, DirectionsBeyondItsRangeEnd) {
+  const TraceCase c = traceCases().front();
+  const Bvh bvh = buildBvh(c.scene.positions, c.scene.triangles);
+  const CpuTracer tracer(c.scene, bvh);
+  for (const float length : {1e-45f, 1e-38f, 1e-30f, 1e-26f, 1e26f, 1e38f}) {
+    for (const Ray& ray : c.rays) {
+      const Hit hit = tracer.trace({ray.origin, vec4(xyz3(ray.direction) * length, 0)});
+      EXPECT_TRUE(hit.triangle == kNoTriangle || hit.triangle < c.scene.triangles.size());
+    }
+  }
 }
 
 }  // namespace

@@ -28,12 +28,13 @@ struct Totals {
   std::string worst;
 };
 
-Totals trace(const hard::HardCase& c, const Bvh& bvh, Tracer& device) {
+/// baker: finds the rays' targets.
+Totals trace(const hard::HardCase& c, const Bvh& bvh, Tracer& device, Device& baker) {
   CrosscheckOptions options;
   options.rays = kRays;
   options.check_every = 1;
   Tracer* const devices[] = {&device};
-  const CrosscheckReport report = crosscheck(c.scene, bvh, std::span(&c.cell, 1), devices, options);
+  const CrosscheckReport report = crosscheck(c.scene, bvh, std::span(&c.cell, 1), devices, baker, options);
   Totals totals;
   for (const KindReport& kind : report.kinds) {
     totals.rays += kind.rays;
@@ -85,10 +86,11 @@ class Hard : public testing::TestWithParam<size_t> {
 };
 
 TEST_P(Hard, NoRayIsLostAndNoTriangleIsMadeUp) {
+  const auto cpu = makeDevice("cpu", case_.scene, bvh_);
   for (const DeviceInfo& info : listDevices()) {
     if (!info.unusable.empty()) continue;
     const auto device = makeTracer(info.id, case_.scene, bvh_);
-    const Totals totals = trace(case_, bvh_, *device);
+    const Totals totals = trace(case_, bvh_, *device, *cpu);
     const uint64_t missed = totals.verdicts[size_t(Verdict::kMissed)];
     const uint64_t wrong = totals.verdicts[size_t(Verdict::kWrong)];
     EXPECT_GT(totals.rays, 5 * kRays);
@@ -125,7 +127,7 @@ TEST_P(Hard, NoDeviceBakesATriangleThatIsNotSeen) {
 
 TEST_P(Hard, TheTableInTheDocumentsIsTrue) {
   const auto device = makeDevice("cpu", case_.scene, bvh_);
-  const Totals totals = trace(case_, bvh_, *device);
+  const Totals totals = trace(case_, bvh_, *device, *device);
   CellPvs pvs = bake(case_, *device);
   const CellProofs proofs = verifyCell(Judge(case_.scene, bvh_), case_.scene, pvs);
   EXPECT_EQ(proofs.counts[size_t(Proof::kDisproved)], 0u) << verifyTable({proofs});

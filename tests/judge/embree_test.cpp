@@ -61,7 +61,7 @@ TEST(Embree, MeetsNothingWhereItBegins) {
 TEST(Embree, SeesInViewsWhatItsRaysHit) {
   SL_SKIP_WITHOUT_EMBREE();
   judge_test::Random random(5);
-  const Scene scene = judge_test::soup(random, 500, 1, 1);
+  const Scene scene = judge_test::soup(random, 3000, 0.3f, 1);
   const auto embree = makeTracer("embree", scene, buildBvh(scene.positions, scene.triangles));
   const std::vector<ViewFrame> views =
       measureViews({"cell", {0, 0, 0}, {0.1, 0.1, 0.1}, {0, 0, 0}}, 0, 3, 1, 60);
