@@ -43,7 +43,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Flo
 };
 
 #include "vk_shaders/launch.h"
-#include "core/vulkan/vulkan_push.h"
+#include "core/shared/vulkan_push.h"
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer LaunchAt {
   VulkanLaunch launch;
 };

@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string>
 
+#include "core/shared/vulkan_push.h"
 #include "core/vulkan/vulkan_context.h"
-#include "core/vulkan/vulkan_push.h"
 
 namespace sightline {
 

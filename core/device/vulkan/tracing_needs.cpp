@@ -25,7 +25,7 @@ bool usesPipelines(const VulkanContext& context) {
   return context.has(VulkanFeature::kPipelines);
 }
 
-const char* layoutText(bool pipelines) {
+const char* vulkanLayout(bool pipelines) {
   return pipelines ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
 }
 

@@ -12,11 +12,11 @@ VulkanNeeds tracingNeeds(bool ray_queries);
 /// Whether tracing stages are ray tracing pipelines on this context of tracingNeeds.
 bool usesPipelines(const VulkanContext& context);
 
+/// DeviceInfo::layout of either kind.
+const char* vulkanLayout(bool pipelines);
+
 /// A tracing stage (trace_random, ...) of the context's kind. group_size: of ray queries.
 VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size);
-
-/// DeviceInfo::layout of a device that traces by pipelines, or by ray queries.
-const char* layoutText(bool pipelines);
 
 /// Why a context cannot draw hemicubes, in one line; empty: it can.
 std::string whyNoHemicubes(const VulkanContext& context);

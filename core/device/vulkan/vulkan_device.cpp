@@ -77,7 +77,7 @@ std::vector<DeviceInfo> listVulkanDevices() {
   std::vector<DeviceInfo> list;
   try {
     for (VulkanDeviceChoice& device : findVulkanDevices(tracingNeeds(false))) {
-      device.info.layout = layoutText(device.abilities.features.contains(VulkanFeature::kPipelines));
+      device.info.layout = vulkanLayout(device.abilities.features.contains(VulkanFeature::kPipelines));
       list.push_back(std::move(device.info));
     }
   } catch (const Error& error) {

@@ -32,7 +32,7 @@ VulkanStages::VulkanStages(const std::string& selector, const Scene& scene, cons
 
 DeviceInfo VulkanStages::info() const {
   DeviceInfo info = context_.info();
-  info.layout = layoutText(usesPipelines(context_));
+  info.layout = vulkanLayout(usesPipelines(context_));
   info.driver_tree_parts = static_cast<uint32_t>(scene_.tree.parts.size());
   info.driver_tree_bytes = scene_.tree.bytes;
   info.driver_tree_build_seconds = scene_.tree.build_seconds;

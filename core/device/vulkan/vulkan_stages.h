@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "core/device/device.h"
+#include "core/device/vulkan/tracing_needs.h"
 #include "core/device/vulkan/vulkan_runner.h"
 #include "core/device/vulkan/vulkan_scene.h"
 

@@ -1,6 +1,6 @@
-// What every shader gets by push constants. C++ and GLSL (scalar layout).
-#ifndef SL_PUSH_H
-#define SL_PUSH_H
+// What the shaders of stages get by push constants (scalar layout).
+#ifndef SL_VULKAN_PUSH_H
+#define SL_VULKAN_PUSH_H
 #include "core/shared/language.h"
 SL_NAMESPACE_BEGIN
 
