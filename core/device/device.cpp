@@ -5,7 +5,7 @@
 namespace sightline {
 
 HemicubeDrawer& Device::drawer() {
-  throw Error(info().id + " cannot rasterise: only Vulkan devices do", kExitUsage);
+  throw Error(info().id + " cannot rasterise: only Vulkan devices rasterise", kExitUsage);
 }
 
 }  // namespace sightline
