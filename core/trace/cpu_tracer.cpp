@@ -20,9 +20,6 @@ struct StackEntry {
 /// Each node on a path leaves at most seven siblings behind.
 constexpr uint32_t kStackSize = 7 * kMaxDepth + 8;
 
-/// Child of an empty slot (BvhNode8).
-constexpr uint32_t kNoChild = 0xffffffffu;
-
 /// The planes of a node's eight boxes that the ray meets first and last, by the sign of its direction.
 struct PlaneOffsets {
   int near_x, far_x, near_y, far_y, near_z, far_z;  ///< rows of eight floats from the node's start
