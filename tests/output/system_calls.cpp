@@ -6,6 +6,7 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <mutex>
 
 namespace sightline {
 
@@ -16,16 +17,26 @@ bool SystemCalls::reads_fail = false;
 
 using sightline::SystemCalls;
 
+namespace {
+
+/// Threads may save at once.
+void note(const std::string& call) {
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  SystemCalls::log.push_back(call);
+}
+
+}  // namespace
+
 extern "C" int fsync(int descriptor) {
   const auto file = std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(descriptor));
-  SystemCalls::log.push_back("fsync " + file.filename().string() +
-                             (std::filesystem::is_directory(file) ? "/" : ""));
+  note("fsync " + file.filename().string() + (std::filesystem::is_directory(file) ? "/" : ""));
   return int(::syscall(SYS_fsync, descriptor));
 }
 
 extern "C" int rename(const char* from, const char* to) noexcept {
-  SystemCalls::log.push_back("rename " + std::filesystem::path(from).filename().string() + " " +
-                             std::filesystem::path(to).filename().string());
+  note("rename " + std::filesystem::path(from).filename().string() + " " +
+       std::filesystem::path(to).filename().string());
   return int(::syscall(SYS_renameat2, AT_FDCWD, from, AT_FDCWD, to, 0));
 }
 
