@@ -113,7 +113,7 @@ void OpenClContext::build(const std::string& options) {
   program_ = ClHandle<cl_program, clReleaseProgram>(
       clCreateProgramWithSource(context_.get(), 1, &source, nullptr, &code));
   checkCl(code, "clCreateProgramWithSource");
-  const std::string all = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt " + options;
+  const std::string all = std::string(kClBuildOptions) + " " + options;
   code = clBuildProgram(program_.get(), 1, &device_, all.c_str(), nullptr, nullptr);
   if (code != CL_SUCCESS) {
     throw Error(fmt::format("{} ({}) could not compile the kernels with \"{}\": {} ({})\n{}", info_.id,
