@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstdio>
 #include <exception>
 #include <string>
 #include <vector>
@@ -27,14 +28,15 @@ bool same = true;
 void expect(bool holds, const std::string& what) {
   if (!holds) fmt::print("differs from cpu: {}\n", what);
   same = same && holds;
+  std::fflush(stdout);
 }
 
 BakeParams paramsOf(Method method) {
   BakeParams params;
   params.method = method;
-  params.n_rand = 2000;
-  params.validation_rays = 1000;
-  params.max_rays = 12'000;
+  params.n_rand = 300;
+  params.validation_rays = 200;
+  params.max_rays = 3000;
   params.n_abs_edge = 1;
   return params;
 }
@@ -76,14 +78,14 @@ void traceRaysAndViews(const Scene& scene, const Bvh& bvh, vec3 eye, uint32_t ra
   const auto device = makeDevice("opencl", scene, bvh, options);
   const CpuTracer reference(scene, bvh);
   testing_support::Random random(1);
-  std::vector<Ray> rays(997);  // the last work item has lanes to spare
+  std::vector<Ray> rays(203);  // the last work item has lanes to spare
   for (Ray& ray : rays) ray = {vec4(eye, 0), vec4(random.point(1), 0)};
   std::vector<Hit> hits(rays.size()), wanted;
   for (const Ray& ray : rays) wanted.push_back(reference.trace(ray));
   device->traceRays(rays, hits);
   expect(sameHits(hits, wanted), "hits of rays");
 
-  constexpr uint32_t kResolution = 21;
+  constexpr uint32_t kResolution = 9;
   const std::vector<ViewFrame> frames = {
       {vec4(eye, 0), vec4(0, 0, 1, 0), vec4(1, 0, 0, 0), vec4(0, 1, 0, 0)},
       {vec4(eye, 0), vec4(1, 0, 0, 0), vec4(0, 0, -1, 0), vec4(0, 1, 0, 0)}};
@@ -109,7 +111,7 @@ void traceSegment(const Scene& scene, const Bvh& bvh, vec3 eye, uint32_t rays_pe
   face.edge_v = face.axis_v = vec4(0, 1, 0, 0);
   face.normal = vec4(0, 0, 1, 0);
   const uvec4 shifts(123456789u, 12345678u, 99u, 1000007u);
-  const RandomSegment segment = makeRandomSegment(0, 5'000, 1001, 1);
+  const RandomSegment segment = makeRandomSegment(0, 5000, 301, 1);
   const uint64_t slots = slotCount(segment);
   const ClBuffer buffer = context.buffer(slots * sizeof(Hit), "hits");
   context.launch(context.kernel("traceSegmentKernel"), (slots + rays_per_item - 1) / rays_per_item, 8,
@@ -125,7 +127,7 @@ void traceSegment(const Scene& scene, const Bvh& bvh, vec3 eye, uint32_t rays_pe
 
 /// A scene of 1,000 triangles fills no hash set, so this fills one by hand and lets it grow.
 void growHashSet() {
-  constexpr uint32_t kTriangles = 20'000;
+  constexpr uint32_t kTriangles = 3000;
   OpenClContext context("opencl");
   context.build(traceOptions(1));
   const ClBuffer overflow = context.buffer(4, "overflow");
