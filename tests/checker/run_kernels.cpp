@@ -155,7 +155,7 @@ void growHashSet() {
   expect(kept, "hash set after it grew");
 }
 
-void runAll() {
+void runAll(uint32_t only) {
   const Scene scene = generateScene("city", 1000, 1);
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   // Large enough to hold a few triangles.
@@ -163,6 +163,7 @@ void runAll() {
   cell.size += glm::dvec3(10, 5, 10);
   const vec3 eye(cell.center);
   for (const uint32_t rays_per_item : {1u, 8u}) {
+    if (only != 0 && rays_per_item != only) continue;
     traceRaysAndViews(scene, bvh, eye, rays_per_item);
     traceSegment(scene, bvh, eye, rays_per_item);
     for (const Method method : {Method::kGvspp, Method::kGvs}) {
@@ -177,9 +178,9 @@ void runAll() {
 }  // namespace
 }  // namespace sightline
 
-int main() {
+int main(int argc, char** argv) {
   try {
-    sightline::runAll();
+    sightline::runAll(argc > 1 ? argv[1][0] == '8' ? 8 : 1 : 0);
   } catch (const std::exception& error) {
     fmt::print("{}\n", error.what());
     return 1;
