@@ -1,5 +1,5 @@
-// Runs one kernel with a fault, named by the argument, or "clean", one without: what Oclgrind must find, and what it
-// must not (faults_test.sh).
+// Runs one kernel with a fault, named by the argument, or "clean", one without: what Oclgrind must find, and
+// what it must not (faults_test.sh).
 #include <fmt/format.h>
 
 #include <exception>

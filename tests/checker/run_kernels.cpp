@@ -1,22 +1,25 @@
-// Runs every OpenCL kernel on a scene of about 1,000 triangles, to be run under Oclgrind (run_checker.sh): every method
-// and set, both layouts, and compares what comes out with the device cpu. Exit 1 where it differs.
+// Runs every OpenCL kernel on a scene of about 1,000 triangles, to be run under Oclgrind (kernels_test.sh):
+// every method and set, both layouts, and compares what comes out with the device cpu. Exit 1 where it
+// differs.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <bit>
 #include <cstdio>
 #include <exception>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "cl_kernels/program_source.h"
 #include "core/device/opencl/opencl_scene.h"
 #include "core/device/opencl/opencl_set.h"
 #include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
 #include "core/gvs/bake_cell.h"
 #include "core/sampling/random_segment.h"
-#include "core/shared/set.h"
 #include "core/shared/random_ray.h"
+#include "core/shared/set.h"
 #include "core/trace/cpu_tracer.h"
 #include "tests/support/random_triangles.h"
 
@@ -155,7 +158,32 @@ void growHashSet() {
   expect(kept, "hash set after it grew");
 }
 
-void runAll(uint32_t only) {
+/// Prints all kernels that the program has, a line "kernel NAME" each, as the compiler knows them.
+void printKernels() {
+  cl_platform_id platform = nullptr;
+  cl_device_id device = nullptr;
+  checkCl(clGetPlatformIDs(1, &platform, nullptr), "clGetPlatformIDs");
+  checkCl(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, nullptr), "clGetDeviceIDs");
+  cl_int code = CL_SUCCESS;
+  const ClHandle<cl_context, clReleaseContext> context(
+      clCreateContext(nullptr, 1, &device, nullptr, nullptr, &code));
+  checkCl(code, "clCreateContext");
+  const char* source = kProgramSource;
+  const ClHandle<cl_program, clReleaseProgram> program(
+      clCreateProgramWithSource(context.get(), 1, &source, nullptr, &code));
+  checkCl(code, "clCreateProgramWithSource");
+  const std::string options = std::string(kClBuildOptions) + " " + traceOptions(1);
+  checkCl(clBuildProgram(program.get(), 1, &device, options.c_str(), nullptr, nullptr), "clBuildProgram");
+  std::vector<char> names(1 << 16);
+  checkCl(clGetProgramInfo(program.get(), CL_PROGRAM_KERNEL_NAMES, names.size(), names.data(), nullptr),
+          "clGetProgramInfo");
+  std::string name;
+  std::istringstream list(names.data());
+  while (std::getline(list, name, ';')) fmt::print("kernel {}\n", name);
+}
+
+void runAll() {
+  printKernels();
   const Scene scene = generateScene("city", 1000, 1);
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   // Large enough to hold a few triangles.
@@ -163,7 +191,6 @@ void runAll(uint32_t only) {
   cell.size += glm::dvec3(10, 5, 10);
   const vec3 eye(cell.center);
   for (const uint32_t rays_per_item : {1u, 8u}) {
-    if (only != 0 && rays_per_item != only) continue;
     traceRaysAndViews(scene, bvh, eye, rays_per_item);
     traceSegment(scene, bvh, eye, rays_per_item);
     for (const Method method : {Method::kGvspp, Method::kGvs}) {
@@ -178,9 +205,9 @@ void runAll(uint32_t only) {
 }  // namespace
 }  // namespace sightline
 
-int main(int argc, char** argv) {
+int main() {
   try {
-    sightline::runAll(argc > 1 ? argv[1][0] == '8' ? 8 : 1 : 0);
+    sightline::runAll();
   } catch (const std::exception& error) {
     fmt::print("{}\n", error.what());
     return 1;
