@@ -15,6 +15,9 @@
 
 namespace sightline {
 
+/// What every program is compiled with.
+inline constexpr const char* kClBuildOptions = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt";
+
 /// Throws Error that names the call and the code's name, if the code is not CL_SUCCESS.
 void checkCl(cl_int code, const char* call);
 

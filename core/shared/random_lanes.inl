@@ -114,7 +114,8 @@ SL_FUNC SL_LANES(HemisphereDirection) SL_LANES(hemisphereDirection)(SL_UINTS azi
   SL_FLOATS within = SL_TO_FLOATS(azimuth24 & 0x3fffffu) * 2.384185791015625e-7f;  // exact, [0, 1)
   SL_FLOATS s = SL_LANES(sinQuarter)(within);
   SL_FLOATS c = SL_LANES(sinQuarter)(1.0f - within);
-  SL_FLOATS height = SL_LANES(haltonFraction)(min(height24, 0xffffc0u));
+  SL_UINTS highest = 0xffffc0u;  // of SL_UINTS: Oclgrind misreads the scalar of min(uint8, uint)
+  SL_FLOATS height = SL_LANES(haltonFraction)(min(height24, highest));
   SL_LANES(HemisphereDirection) direction;
   direction.z = 1.0f - height;
   SL_FLOATS r = sqrt(height * (1.0f + direction.z));

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/device/opencl/opencl_scene.h"
 #include "core/opencl/opencl_devices.h"
+#include "core/opencl/opencl_rounding.h"
 
 namespace sightline {
 namespace {
@@ -53,6 +54,21 @@ TEST(OpenClFloats, EachMissingAbilityIsNamed) {
   expectReason(good & ~cl_device_fp_config(CL_FP_ROUND_TO_NEAREST), good_double, "CL_FP_ROUND_TO_NEAREST");
   expectReason(good & ~cl_device_fp_config(CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT), good_double,
                "CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT");
+}
+
+/// The self-test passes where the device promises correct rounding, and sees the usual shortcuts.
+TEST_F(OpenCl, RoundingIsTried) {
+  for (const OpenClDevice& device : findOpenClDevices()) {
+    if (!device.info.unusable.empty()) continue;
+    EXPECT_TRUE(roundsCorrectly(device.id)) << device.info.name;
+    EXPECT_FALSE(roundsCorrectly(device.id, "a * (1.0f / b)")) << device.info.name;
+    EXPECT_FALSE(roundsCorrectly(device.id, "a / b", "a * (1.0f / sqrt(a))")) << device.info.name;
+    // Off by a unit in the last place where the quotient is next to the middle of two floats only.
+    EXPECT_FALSE(roundsCorrectly(device.id, "(float)((double)a * (1 + 0x1p-30) / b)")) << device.info.name;
+    EXPECT_FALSE(roundsCorrectly(device.id, "a / b", "(float)(sqrt((double)a) * (1 - 0x1p-30))"))
+        << device.info.name;
+    EXPECT_FALSE(roundsCorrectly(device.id, "fabs(a / b) < 0x1p-126f ? 0.0f : a / b")) << device.info.name;
+  }
 }
 
 TEST_F(OpenCl, UnknownSelectorsAreToldWhatThereIs) {

@@ -42,9 +42,12 @@ uint32_t raysPerItem(const OpenClContext& context) {
   return context.isCpu() ? 8 : 1;
 }
 
+std::string kernelOptions(uint32_t rays_per_item) {
+  return kClBuildOptions + (" -DSL_PACKET=" + std::to_string(rays_per_item));
+}
+
 void buildKernels(OpenClContext& context, uint32_t rays_per_item, const std::string& extra) {
-  context.build(kProgramSource, "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -DSL_PACKET=" +
-                                    std::to_string(rays_per_item) + " " + extra);
+  context.build(kProgramSource, kernelOptions(rays_per_item) + " " + extra);
 }
 
 OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t rays_per_item,

@@ -19,6 +19,9 @@ struct OpenClScene {
 /// Rays that a work item traces where the device is fastest: packets of 8 on CPUs, 1 elsewhere.
 uint32_t raysPerItem(const OpenClContext& context);
 
+/// The compiler's options for our kernels, which trace so many rays a work item, 8 or 1.
+std::string kernelOptions(uint32_t rays_per_item);
+
 /// Builds our kernels (cl_kernels/program.cl) to trace so many rays a work item, 8 or 1. extra: further
 /// options of the compiler. Throws Error.
 void buildKernels(OpenClContext& context, uint32_t rays_per_item, const std::string& extra = {});
