@@ -58,7 +58,7 @@ TEST(OpenClFloats, EachMissingAbilityIsNamed) {
 
 /// The self-test passes where the device promises correct rounding, and sees the usual shortcuts.
 TEST_F(OpenCl, RoundingIsTried) {
-  for (const OpenClDevice& device : findOpenClDevices()) {
+  for (const OpenClDeviceChoice& device : findOpenClDevices()) {
     if (!device.info.unusable.empty()) continue;
     EXPECT_TRUE(roundsCorrectly(device.id)) << device.info.name;
     EXPECT_FALSE(roundsCorrectly(device.id, "a * (1.0f / b)")) << device.info.name;

@@ -115,7 +115,7 @@ TEST(VulkanErrors, NeedsThatNothingMeetsAreNamed) {
   expectLine(lineOf([&] { const VulkanContext context("vulkan:0", needs); }),
              {"vulkan:0", "its driver lacks VK_SL_no_such_extension"});
   const VulkanContext without_program("vulkan", VulkanNeeds{});
-  expectLine(lineOf([&] { VulkanStage::list(without_program, "rehash"); }), {"rehash.comp", "no program"});
+  expectLine(lineOf([&] { VulkanStage::compute(without_program, "rehash.comp", 64); }), {"rehash.comp", "no program"});
 }
 
 /// With all that drawing takes and nothing of ray tracing turned on: copies and images work.

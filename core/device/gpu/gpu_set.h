@@ -33,6 +33,7 @@ class GpuSet {
   }
 
   uint32_t capacity() const { return capacity_; }  ///< 0: array
+  const Buffer& keys() const { return keys_; }
   const Buffer& winner() const { return winner_; }
   const Buffer& fresh() const { return fresh_; }
   uint32_t freshWords() const { return fresh_words_; }
