@@ -20,8 +20,8 @@ readonly packages=(
 
 # Only the tests need these: Vulkan's validation layer, a Vulkan driver that traces rays on any processor (Debian 12's
 # own Mesa has none yet, so it comes from bookworm-backports), a browser to open reports in, and a simulator of an OpenCL
-# device that finds data races.
-readonly test_packages=(vulkan-validationlayers mesa-vulkan-drivers chromium oclgrind)
+# device that finds data races; .ci/layers is Python.
+readonly test_packages=(vulkan-validationlayers mesa-vulkan-drivers chromium oclgrind python3)
 readonly mesa_version=25
 
 usage() {

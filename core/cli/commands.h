@@ -7,7 +7,7 @@
 //   void addNameCommand(CLI::App& app);   // e.g. cells_command.cpp: addCellsCommand
 //
 // It adds a subcommand with its options and a callback that does the work (keep the options in a
-// std::shared_ptr that the callback holds). CMake finds the files, so there is no list to edit. A callback
+// std::shared_ptr that the callback holds). core/cli/CMakeLists.txt lists the files. A callback
 // throws Error for what goes wrong; to end with another exit code than 0 it throws ExitCode.
 namespace sightline {
 
