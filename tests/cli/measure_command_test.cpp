@@ -168,7 +168,7 @@ TEST_F(MeasureCommandTest, AgreesWithTheBoundOfATargetedBake) {
       " --device cpu --method random --n-rand 20000 --validation-rays 0 --report " + path("target.json");
   expectRun(bake + " --target-error 1", 2, {"--target-error"});
   expectRun(bake + " --target-error 0.002", 0, {"error < 0.00", "(95 %)", "target error"});
-  expectRun("info " + path("target.pvs"), 0, {"wrong pixels below 0.002 of all", "error < 0.00"});
+  expectRun("info " + path("target.pvs"), 0, {"target_error 0.002", "error < 0.00"});
   const auto report = nlohmann::json::parse(std::ifstream(path("target.json")));
   EXPECT_EQ(report["parameters"]["target_error"], 0.002);
   for (const auto& cell : report["cells"]) {
