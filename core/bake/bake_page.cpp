@@ -244,7 +244,8 @@ std::vector<ReportFact> parameterFacts(const BakeParams& params) {
   for (const ParamGroup group : kParamGroups) {
     for (const Param& param : kParams) {
       if (param.group != group || !isUsedBy(param, params.method)) continue;
-      facts.push_back({param.label, shownText(param, params)});
+      const bool drawn = params.method == Method::kRaster && param.name == std::string_view("n_rand");
+      facts.push_back({drawn ? "samples an iteration" : param.label, shownText(param, params)});
     }
   }
   return facts;

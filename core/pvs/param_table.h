@@ -70,8 +70,7 @@ inline constexpr Param kParams[] = {
      "gvs++; gvs: the original, with fewer border and reverse rays; random: random rays alone; raster: "
      "drawn hemicubes, on vulkan only; naive: gvs++ with the set on the host, for comparison"},
     {ParamField<uint32_t>{&BakeParams::n_rand, 1, param_table::kMostUint32 - 2}, "n_rand", "rays", nullptr, 3,
-     kEveryMethod, ParamGroup::kSamples, "random rays (raster: samples) an iteration",
-     "random rays an iteration"},
+     kEveryMethod, ParamGroup::kSamples, "random rays an iteration", "random rays an iteration"},
     {ParamField<uint32_t>{&BakeParams::n_abs_edge, 0, 1000}, "n_abs_edge", "samples", nullptr, 3,
      kMethodsThatSample, ParamGroup::kSamples, "border samples an edge",
      "samples along each long edge of the border polygon at most"},

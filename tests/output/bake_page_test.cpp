@@ -181,6 +181,8 @@ TEST(BakePage, ListsTheParametersOfTheMethod) {
   EXPECT_FALSE(has(Method::kRandom, "discontinuity, share of the distance"));
   EXPECT_TRUE(has(Method::kRaster, "pixels a side"));
   EXPECT_FALSE(has(Method::kRaster, "rays of a batch"));
+  EXPECT_TRUE(has(Method::kRaster, "samples an iteration"));
+  EXPECT_FALSE(has(Method::kRaster, "random rays an iteration"));
 }
 
 TEST(BakePage, NoNameBreaksIt) {
