@@ -68,7 +68,7 @@ TEST_F(CompareCommand, WritesTableJsonCsvAndPage) {
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), int(1 + cell_count * 8 * 2));
   const std::string page = read(html);
   EXPECT_NE(page.find("Average error over rays"), std::string::npos);
-  EXPECT_NE(page.find("<dt>random rays (raster: samples) an iteration</dt>"), std::string::npos);
+  EXPECT_NE(page.find("<dt>random rays an iteration</dt>"), std::string::npos);
   EXPECT_EQ(page.find("<dt>method</dt>"), std::string::npos);
   EXPECT_EQ(page.find("<dt>validation rays</dt>"), std::string::npos);
 }
