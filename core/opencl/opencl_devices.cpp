@@ -22,7 +22,7 @@ std::string clDeviceText(cl_device_id device, cl_device_info property) {
   return text;
 }
 
-/// Tests run the kernels on a simulator that rounds correctly and does not say so (docs/devices.md). Not for
+/// Tests run the kernels on a simulator that rounds correctly and does not say so (docs/numerics.md). Not for
 /// users: a compiler may divide otherwise in another kernel, by a constant or in a vector, so that trying
 /// proves nothing about the sets of a device that does not promise it.
 bool mayTryRounding() {
