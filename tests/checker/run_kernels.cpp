@@ -17,6 +17,7 @@
 #include "core/device/registry/make_device.h"
 #include "core/generate/generate.h"
 #include "core/gvs/bake_cell.h"
+#include "core/sampling/make_stage_params.h"
 #include "core/sampling/random_segment.h"
 #include "core/shared/random_ray.h"
 #include "core/shared/set.h"
@@ -103,6 +104,21 @@ void traceRaysAndViews(const Scene& scene, const Bvh& bvh, vec3 eye, uint32_t ra
   expect(image == wanted_image, fmt::format("views, {} rays an item", rays_per_item));
 }
 
+/// Triangles put into the set without rays, as those that a cell contains.
+void insertContained(const Scene& scene, const Bvh& bvh, const ViewCell& cell, SetKind set) {
+  DeviceOptions options;
+  options.set = set;
+  const std::vector<Face> faces = cellFaces(cell);
+  const StageParams params = makeStageParams(paramsOf(Method::kGvspp), faces, uvec4(1, 2, 3, 4));
+  const std::vector<uint32_t> triangles = {3, 5, 8, 300};
+  const auto device = makeDevice("opencl", scene, bvh, options);
+  device->beginCell(faces, params);
+  device->insertContained(triangles);
+  std::vector<uint32_t> found;
+  for (const PvsEntry& entry : device->readPvs()) found.push_back(entry.origin_triangle.w);
+  expect(found == triangles, "contained triangles");
+}
+
 /// traceSegmentKernel, which benchmarks run.
 void traceSegment(const Scene& scene, const Bvh& bvh, vec3 eye, uint32_t rays_per_item) {
   OpenClContext context("opencl");
@@ -169,7 +185,8 @@ void printKernels() {
   const ClHandle<cl_program, clReleaseProgram> program(
       clCreateProgramWithSource(context.get(), 1, &source, nullptr, &code));
   checkCl(code, "clCreateProgramWithSource");
-  checkCl(clBuildProgram(program.get(), 1, &device, kernelOptions(1).c_str(), nullptr, nullptr), "clBuildProgram");
+  checkCl(clBuildProgram(program.get(), 1, &device, kernelOptions(1).c_str(), nullptr, nullptr),
+          "clBuildProgram");
   std::vector<char> names(1 << 16);
   checkCl(clGetProgramInfo(program.get(), CL_PROGRAM_KERNEL_NAMES, names.size(), names.data(), nullptr),
           "clGetProgramInfo");
@@ -195,6 +212,7 @@ void runAll() {
       }
     }
   }
+  for (const SetKind set : {SetKind::kArray, SetKind::kHash}) insertContained(scene, bvh, cell, set);
   growHashSet(scene, bvh);
 }
 
