@@ -103,28 +103,33 @@ class OpenClContext {
 
   /// Enqueues a kernel over `global` work items (rounded up to whole groups: kernels check their range).
   /// local: work-group size, 0 lets the driver choose (then global is not rounded). args: ClBuffer, cl_mem,
-  /// scalars or structs, in order. global 0 does nothing.
+  /// scalars or structs, or arrays of handles of buffers, in order. global 0 does nothing.
   template <typename... Args>
   void launch(const ClKernel& kernel, uint64_t global, uint32_t local, const Args&... args) {
     cl_uint index = 0;
-    (setArgument(kernel, index++, args), ...);
+    (setArgument(kernel, index, args), ...);
     enqueue(kernel, global, local);
   }
-  /// The two halves of launch, for whoever sets only the arguments that changed.
-  template <typename Arg>
-  void setArgument(const ClKernel& kernel, cl_uint index, const Arg& arg) {
-    if constexpr (std::is_same_v<Arg, ClBuffer>) {
-      setArgument(kernel, index, arg.get());
-    } else {
-      static_assert(std::is_trivially_copyable_v<Arg>);
-      checkCl(clSetKernelArg(kernel.get(), index, sizeof arg, &arg), "clSetKernelArg");
-    }
-  }
-  void enqueue(const ClKernel& kernel, uint64_t global, uint32_t local);
   /// Waits for everything enqueued.
   void finish();
 
  private:
+  template <typename Arg>
+  void setArgument(const ClKernel& kernel, cl_uint& index, const Arg& arg) {
+    if constexpr (std::is_same_v<Arg, ClBuffer>) {
+      setArgument(kernel, index, arg.get());
+    } else {
+      static_assert(std::is_trivially_copyable_v<Arg>);
+      checkCl(clSetKernelArg(kernel.get(), index++, sizeof arg, &arg), "clSetKernelArg");
+    }
+  }
+  template <size_t kCount>
+  void setArgument(const ClKernel& kernel, cl_uint& index,
+                   const std::array<ClHandle<cl_mem, clReleaseMemObject>, kCount>& buffers) {
+    for (const auto& buffer : buffers) setArgument(kernel, index, buffer.get());
+  }
+  void enqueue(const ClKernel& kernel, uint64_t global, uint32_t local);
+
   cl_device_id device_ = nullptr;
   DeviceInfo info_;
   bool is_cpu_ = false;

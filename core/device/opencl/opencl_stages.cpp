@@ -1,7 +1,5 @@
 #include "core/device/opencl/opencl_stages.h"
 
-#include <utility>
-
 namespace sightline {
 namespace {
 
@@ -50,7 +48,6 @@ void OpenClStages::bind(StageBuffer name, const ClBuffer& buffer) {
   if (bound(name).get() == buffer.get()) return;
   checkCl(clRetainMemObject(buffer.get()), "clRetainMemObject");
   bound(name) = ClHandle<cl_mem, clReleaseMemObject>(buffer.get());
-  ++bindings_[uint32_t(name)];
 }
 
 void OpenClStages::run(GpuStage stage, uint64_t count) {
@@ -69,16 +66,7 @@ void OpenClStages::run(GpuStage stage, uint64_t count) {
                            bound(StageBuffer::views).get(), launch_.resolution, launch_.item_count,
                            bound(StageBuffer::view_triangles).get());
   }
-  cl_uint index = 0;
-  context_.setArgument(kernel, index++, scene_.nodes);
-  context_.setArgument(kernel, index++, scene_.triangles);
-  context_.setArgument(kernel, index++, scene_.reach);
-  context_.setArgument(kernel, index++, launch_);
-  for (uint32_t i = 0; i < kStageBuffers; ++i) {
-    if (std::exchange(passed_[uint32_t(stage)][i], bindings_[i]) == bindings_[i]) continue;
-    context_.setArgument(kernel, index + i, bound_[i].get());
-  }
-  context_.enqueue(kernel, items, local);
+  context_.launch(kernel, items, local, scene_.nodes, scene_.triangles, scene_.reach, launch_, bound_);
 }
 
 std::array<uint32_t, kCounterWords> OpenClStages::takeCounters() {

@@ -45,10 +45,6 @@ class OpenClStages {
   OpenClScene scene_;
   ClBuffer dummy_, record_of_, counters_;
   std::array<ClKernel, kGpuStages> kernels_;
-  /// How often each buffer was bound anew, and how often when each kernel got it last: only arguments that
-  /// changed are set.
-  std::array<uint64_t, kStageBuffers> bindings_{};
-  std::array<std::array<uint64_t, kStageBuffers>, kGpuStages> passed_{};
   std::array<ClHandle<cl_mem, clReleaseMemObject>, kStageBuffers> bound_;  ///< each holds a reference
   StageLaunch launch_{};
 };
