@@ -17,7 +17,7 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
   if (const auto problem = cellProblem(cells)) throw Error(problem->text(), kExitUsage);
   PvsFile inputs;
   inputs.algorithm = kAlgorithmRevision;
-  inputs.intersector = intersectorOf(requireDevice(device));
+  inputs.intersector = intersectorOf(device);
   inputs.scene_hash = session.sceneHash();
   inputs.triangle_count = uint32_t(session.scene().triangles.size());
   inputs.scene_name = session.options().scene_name;

@@ -213,6 +213,15 @@ TEST(BakeCommand, KeepsWitnessesOnlyWhenAsked) {
   EXPECT_TRUE(without.cells[0].witnesses.empty());
 }
 
+/// A complete bake is left as it is where its device, whose intersection test is that of all, is not there.
+TEST(BakeCommand, ACompleteBakeNeedsNoDevice) {
+  const Workplace place(1);
+  ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);
+  const ProgramRun again = runProgram(place.bake("x.pvs", "", "opencl"), "OCL_ICD_VENDORS=/nonexistent");
+  EXPECT_EQ(again.exit_code, 0) << again.output;
+  EXPECT_TRUE(contains(again, "already complete")) << again.output;
+}
+
 TEST(BakeCommand, AgainIsAlreadyComplete) {
   const Workplace place(1);
   ASSERT_EQ(runProgram(place.bake("x.pvs")).exit_code, 0);

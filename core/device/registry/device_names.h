@@ -16,6 +16,11 @@ std::vector<DeviceInfo> listDevices();
 /// once, before the work that a tree takes.
 DeviceInfo requireDevice(const std::string& name);
 
+/// Whose intersection test decides what rays hit on the device that `name` selects (intersectorOf its
+/// DeviceInfo). Looks at the device only where it has a test of its own (vulkan); throws Error as
+/// requireDevice then, and for a name of no kind.
+std::string intersectorOf(const std::string& name);
+
 /// Whether the name could be one: it is of a kind above.
 bool isDeviceName(const std::string& name);
 

@@ -23,6 +23,7 @@ namespace {
 /// A kind of devices of which there may be several: NAME, NAME:INDEX or NAME:PART-OF-NAME selects one.
 struct Kind {
   const char* name;
+  bool own_intersector;  ///< what rays hit is decided by the device and its driver
   const char* left_out;  ///< why this program has none; null: it has, and the rest is not null
   std::vector<DeviceInfo> (*list)();
   DeviceInfo (*require)(const std::string& selector);  ///< throws Error unless it selects a usable one
@@ -33,14 +34,14 @@ constexpr const char* kEmbree = "embree";
 
 constexpr Kind kKinds[] = {
 #ifdef SL_HAVE_OPENCL
-    {"opencl", nullptr, listOpenClDevices, requireOpenClDevice, makeOpenClDevice},
+    {"opencl", false, nullptr, listOpenClDevices, requireOpenClDevice, makeOpenClDevice},
 #else
-    {"opencl", "built without OpenCL (SL_WITH_OPENCL=OFF)", nullptr, nullptr, nullptr},
+    {"opencl", false, "built without OpenCL (SL_WITH_OPENCL=OFF)", nullptr, nullptr, nullptr},
 #endif
 #ifdef SL_HAVE_VULKAN
-    {"vulkan", nullptr, listVulkanDevices, requireVulkanDevice, makeVulkanDevice},
+    {"vulkan", true, nullptr, listVulkanDevices, requireVulkanDevice, makeVulkanDevice},
 #else
-    {"vulkan", "built without Vulkan (SL_WITH_VULKAN=OFF)", nullptr, nullptr, nullptr},
+    {"vulkan", true, "built without Vulkan (SL_WITH_VULKAN=OFF)", nullptr, nullptr, nullptr},
 #endif
 };
 
@@ -95,6 +96,12 @@ DeviceInfo requireDevice(const std::string& name) {
   if (name == kEmbree) return requireEmbree();
   if (name == "cpu") return cpuDeviceInfo();
   throwUnknown(name);
+}
+
+std::string intersectorOf(const std::string& name) {
+  if (!isDeviceName(name)) throwUnknown(name);
+  const Kind* kind = kindOf(name);
+  return kind && kind->own_intersector ? intersectorOf(requireDevice(name)) : "";
 }
 
 std::string whyNoBakes(const std::string& name) {
