@@ -35,7 +35,7 @@ struct StripArguments {
   std::filesystem::path scene, out;
   std::string from = "outside";
   StripOptions strip;
-  uint32_t check_rays = 1'000'000;  ///< of each cell
+  uint32_t rays = 0, check_rays = 1'000'000;  ///< of each cell
   std::string device = "opencl";
   DeviceOptions device_options;
   bool spatial_splits = false;
@@ -123,30 +123,63 @@ void sayResult(const StripArguments& arguments, const Scene& scene, const StripR
   for (const std::string& note : report.notes) fmt::print("note: {}\n", note);
 }
 
+/// Says how far tracing is that goes through all cells; ends with Ctrl-C.
+class TraceStatus {
+ public:
+  TraceStatus(const char* what, size_t cells) : what_(what), cells_(cells) {}
+  RayProgress of(size_t cell) {
+    return [this, cell](uint64_t rays) {
+      status_.show([&] {
+        return fmt::format("{}: cell {} of {}, {} rays", what_, cell + 1, cells_, shortCount(rays));
+      });
+      return !stopped();
+    };
+  }
+  bool stopped() const { return stop_.exitCode() != 0; }
+  /// Ends the line. Throws ExitCode if it was stopped.
+  void end() {
+    status_.end();
+    if (stopped()) throw ExitCode{stop_.exitCode()};
+  }
+
+ private:
+  const char* what_;
+  size_t cells_;
+  StopSignal stop_;
+  StatusLine status_;
+};
+
+/// What --rays see, too.
+void addSeen(const StripArguments& arguments, const PvsFile& pvs, Session& session, std::vector<bool>& seen) {
+  if (arguments.rays == 0) return;
+  TraceStatus status("rays", pvs.cells.size());
+  uint64_t added = 0;
+  for (uint32_t i = 0; i < pvs.cells.size() && !status.stopped(); ++i) {
+    added += markSeen({session.scene(), session.parts().tracer()}, pvs.cells[i].cell, i,
+                      arguments.params.seed, arguments.rays, seen, status.of(i));
+  }
+  status.end();
+  fmt::print("rays: {} from each cell meet {} that the sets lack\n", shortCount(arguments.rays),
+             counted(added, "triangle"));
+}
+
 /// Reads the output back, and traces fresh rays in both scenes.
 void check(const StripArguments& arguments, const PvsFile& pvs, Session& session) {
   if (arguments.check_rays == 0) return;
   Session stripped(loadScene(arguments.out), sessionOf(arguments));
-  const StopSignal stop;
-  StatusLine status;
+  TraceStatus status("check", pvs.cells.size());
   uint64_t rays = 0, lost = 0;
-  for (uint32_t i = 0; i < pvs.cells.size() && stop.exitCode() == 0; ++i) {
+  for (uint32_t i = 0; i < pvs.cells.size() && !status.stopped(); ++i) {
     uint32_t of_cell = arguments.check_rays;
-    lost += countLostRays(
-        {session.scene(), session.parts().tracer()}, {stripped.scene(), stripped.parts().tracer()},
-        pvs.cells[i].cell, i, arguments.params.seed, of_cell, [&](uint64_t done) {
-          status.show([&] {
-            return fmt::format("check: cell {} of {}, {} rays", i + 1, pvs.cells.size(), shortCount(done));
-          });
-          return stop.exitCode() == 0;
-        });
+    lost += countLostRays({session.scene(), session.parts().tracer()},
+                          {stripped.scene(), stripped.parts().tracer()}, pvs.cells[i].cell, i,
+                          arguments.params.seed, of_cell, status.of(i));
     rays += of_cell;
   }
-  status.end();
   fmt::print(
       "check: {} of {} fresh rays meet first what went: at most {:.2g} in a million, 95 % confidence\n", lost,
       rays, missingUpperBound(lost, rays) * 1e6);
-  if (stop.exitCode() != 0) throw ExitCode{stop.exitCode()};
+  status.end();
 }
 
 void runStrip(const StripArguments& arguments) {
@@ -164,21 +197,23 @@ void runStrip(const StripArguments& arguments) {
   for (const std::string& warning : scene.warnings) fmt::print("warning: {}\n", warning);
   const PvsFile pvs = setsOf(arguments, session);
   sayPromise(pvs);
-  sayResult(arguments, scene,
-            stripScene(scene, arguments.scene, seenOf(pvs), arguments.strip, arguments.out));
+  std::vector<bool> seen = seenOf(pvs);
+  addSeen(arguments, pvs, session, seen);
+  sayResult(arguments, scene, stripScene(scene, arguments.scene, seen, arguments.strip, arguments.out));
   check(arguments, pvs, session);
 }
 
 constexpr const char* kStripFooter =
     "The output is the scene file itself, without the triangles that are seen from no\n"
     "cell; its folder must hold what the scene names beside it. --from outside: from\n"
-    "anywhere outside of the scene's bounds. A triangle that no ray of the bake met goes,\n"
-    "so what a cell is said to miss is the promise; more rays (--n-rand, a lower\n"
-    "--threshold, --target-error) tighten it.\n\n"
+    "anywhere outside of the scene's bounds. A triangle that no ray met goes: what a\n"
+    "cell is said to miss, and the last line, is the promise; more rays (--rays,\n"
+    "--n-rand, a lower --threshold) tighten it.\n\n"
     "Examples:\n"
     "  sightline strip car.glb -o shell.glb\n"
     "  sightline strip level.glb -o walked.glb --from cells.json --compact\n"
-    "  sightline strip level.obj -o walked.obj --from level.pvs --keep-objects\n";
+    "  sightline strip level.obj -o walked.obj --from level.pvs --keep-objects\n"
+    "  sightline strip car.glb -o sure.glb --rays 1G --check-rays 200M\n";
 
 }  // namespace
 

@@ -44,7 +44,9 @@ bool isEmpty(std::string_view text, JsonSpan value) {
 }
 
 std::string keyText(const std::string& key) {
-  return nlohmann::json(key).dump() + ":";
+  std::string text = nlohmann::json(key).dump();
+  text += ':';
+  return text;
 }
 
 }  // namespace
@@ -92,8 +94,7 @@ void JsonEdits::replace(JsonSpan value, std::string json) {
   changes_.emplace(value.begin, std::pair(value.end, std::move(json)));
 }
 
-void JsonEdits::setMembers(JsonSpan object,
-                           const std::map<std::string, std::optional<std::string>>& values) {
+void JsonEdits::setMembers(JsonSpan object, const std::map<std::string, std::optional<std::string>>& values) {
   const std::vector<JsonMember> members = jsonMembers(text_, object);
   auto added = values;
   std::vector<JsonSpan> whole;  // with their keys
@@ -111,7 +112,9 @@ void JsonEdits::setMembers(JsonSpan object,
   bool any_left = std::find(gone.begin(), gone.end(), false) != gone.end();
   for (const auto& [key, value] : added) {
     if (!value) continue;
-    text += (any_left ? "," : "") + keyText(key) + *value;
+    if (any_left) text += ',';
+    text += keyText(key);
+    text += *value;
     any_left = true;
   }
   takeOut(whole, gone);
@@ -123,7 +126,8 @@ void JsonEdits::append(JsonSpan array, const std::vector<std::string>& elements)
   std::string text;
   bool first = isEmpty(text_, array);
   for (const std::string& element : elements) {
-    text += (first ? "" : ",") + element;
+    if (!first) text += ',';
+    text += element;
     first = false;
   }
   const std::vector<JsonSpan> there = jsonElements(text_, array);

@@ -32,10 +32,29 @@ bool isLost(const Scene& original, const Hit& before, const Scene& stripped, con
 
 }  // namespace
 
-uint64_t countLostRays(const TracedScene& original, const TracedScene& stripped, const ViewCell& cell,
-                       uint32_t cell_index, uint64_t seed, uint32_t& rays,
-                       const std::function<bool(uint64_t)>& progress) {
+uint64_t markSeen(const TracedScene& scene, const ViewCell& cell, uint32_t cell_index, uint64_t seed,
+                  uint32_t rays, std::vector<bool>& seen, const RayProgress& progress) {
   const NumberedRays numbered(cellFaces(cell), haltonShifts(seed, cell_index, RandomUse::kCounting), rays);
+  std::vector<Ray> batch(std::min(rays, kLostChunk));
+  std::vector<Hit> hits(batch.size());
+  uint64_t marked = 0;
+  for (uint32_t first = 0; first < rays; first += kLostChunk) {
+    const uint32_t count = std::min(rays - first, kLostChunk);
+    tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });
+    scene.tracer.traceRays(std::span(batch).first(count), std::span(hits).first(count));
+    for (uint32_t i = 0; i < count; ++i) {
+      if (hits[i].triangle == kNoTriangle || seen[hits[i].triangle]) continue;
+      seen[hits[i].triangle] = true;
+      ++marked;
+    }
+    if (progress && !progress(first + uint64_t(count))) break;
+  }
+  return marked;
+}
+
+uint64_t countLostRays(const TracedScene& original, const TracedScene& stripped, const ViewCell& cell,
+                       uint32_t cell_index, uint64_t seed, uint32_t& rays, const RayProgress& progress) {
+  const NumberedRays numbered(cellFaces(cell), haltonShifts(seed, cell_index, RandomUse::kChecking), rays);
   std::vector<Ray> batch(std::min(rays, kLostChunk));
   std::vector<Hit> before(batch.size()), after(batch.size());
   uint64_t lost = 0;

@@ -182,6 +182,11 @@ TEST(LostRays, CountsWhatWentAndIsSeen) {
   EXPECT_EQ(lost(left, left_tracer) + lost(right, right_tracer), all);
   EXPECT_GT(lost(left, left_tracer), all / 3);
   EXPECT_GT(lost(right, right_tracer), all / 3);
+  std::vector<bool> seen(4, false);
+  EXPECT_EQ(markSeen({left, left_tracer}, cell, 0, 1, 20'000, seen), 2u);
+  EXPECT_EQ(seen, (std::vector<bool>{true, true, false, false}));
+  EXPECT_EQ(markSeen({whole, whole_tracer}, cell, 0, 1, 20'000, seen), 2u);
+  EXPECT_EQ(seen, std::vector<bool>(4, true));
   uint32_t rays = 1u << 30;
   EXPECT_EQ(countLostRays({whole, whole_tracer}, {left, left_tracer}, cell, 0, 1, rays,
                           [](uint64_t) { return false; }) > 0,
