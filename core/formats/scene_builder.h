@@ -43,6 +43,15 @@ class SceneBuilder {
   /// Following triangles belong to an object of that name. An empty or blank name becomes `fallback`.
   void beginObject(std::string_view name, const std::string& fallback);
 
+  /// The surface word (core/shared/surface.h) of following triangles, 0 at first.
+  void beginSurface(uint32_t word) { surface_ = word; }
+  /// Gives the last triangle a surface of its own.
+  void surfaceOfLast(uint32_t word);
+  /// Adds flags to the surfaces of triangles that are there already.
+  void addToSurfaces(uint64_t first, uint64_t count, uint32_t flags);
+  /// To add masks and the records of masked triangles.
+  Surfaces& surfaces() { return scene_.surfaces; }
+
   /// Adds the triangles of a polygon; its vertex numbers count within `vertices`. Bad numbers and fewer than
   /// three corners are errors, or, to repair, dropped and counted.
   void addPolygon(std::span<const int64_t> corners, const VertexRange& vertices, const Place& place);
@@ -74,6 +83,7 @@ class SceneBuilder {
   bool repair_;
   Scene scene_;
   SceneObject object_;
+  uint32_t surface_ = 0;
   std::vector<uint32_t> bad_vertices_;  ///< ascending; only to repair
   std::vector<glm::vec3>
       remainders_;                  ///< what positions lost by rounding; shorter if the others lost nothing

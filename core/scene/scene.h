@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/base/extents.h"
+#include "core/scene/surfaces.h"
 
 namespace sightline {
 
@@ -30,18 +31,20 @@ struct Scene {
   std::vector<glm::vec3> positions;   ///< world space, y up by custom; units are the file's
   std::vector<glm::uvec3> triangles;  ///< indices into positions
   std::vector<SceneObject> objects;
+  Surfaces surfaces;                    ///< holes, glass, and sides; empty where there are none
   uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
   uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or vertex
-  uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND: traced as opaque
+  uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND
   uint64_t glass_triangles = 0;         ///< others that one sees through (glTF transmission, OBJ d, Tr or
-                                        ///< map_d): traced as opaque
-  uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false: traced as two-sided
+                                        ///< map_d)
+  uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false
   uint64_t hidden_nodes = 0;            ///< left out by glTF's KHR_node_visibility, with those below them
   std::vector<std::string> warnings;    ///< a line each: what else of the file is not in the scene, or only
                                         ///< roughly
 };
 
-/// Hash of positions and triangles (XXH3, 64 bit): what a PVS depends on.
+/// Hash of positions and triangles, and of surfaces where there are any (XXH3, 64 bit): what a PVS depends
+/// on.
 uint64_t hashScene(const Scene& scene);
 
 /// Axis-aligned bounds of the vertices that triangles use.
