@@ -58,8 +58,8 @@ class Positions {
   /// Of all edges longer than 0; 0 if there is none.
   double medianEdge() const {
     std::vector<double> edges;
-    const size_t step = 1 + scene_.triangles.size() / kMedianTriangles;
-    for (size_t i = 0; i < scene_.triangles.size(); i += step) {
+    const size_t step = 1 + scene_.triangleCount() / kMedianTriangles;
+    for (size_t i = 0; i < scene_.triangleCount(); i += step) {
       for (int from = 0; from < 3; ++from) edges.push_back(edge(i, from));
     }
     std::erase(edges, 0.0);
@@ -73,7 +73,7 @@ class Positions {
   Loss loss(double median_edge, bool all) const {
     Loss loss;
     if (remainders_.empty() || (!all && scene_.degenerate_triangles == 0)) return loss;
-    for (size_t i = 0; i < scene_.triangles.size(); ++i) {
+    for (size_t i = 0; i < scene_.triangleCount(); ++i) {
       const glm::uvec3& t = scene_.triangles[i];
       const bool flat = hasZeroArea(scene_.positions[t.x], scene_.positions[t.y], scene_.positions[t.z]);
       if ((!flat && !all) || !hasShape(i, median_edge)) continue;
@@ -142,7 +142,7 @@ std::string precisionWarning(const Scene& scene, std::span<const glm::vec3> rema
       "single precision steps by {:.3g} at coordinates of {:.10g}, and the median edge is {:.3g}; of {} "
       "triangles "
       "{} lose their area by that and {} turn by more than 30 degrees; {}",
-      step, reach, median_edge, scene.triangles.size(), loss.collapsed, loss.turned, cure);
+      step, reach, median_edge, scene.triangleCount(), loss.collapsed, loss.turned, cure);
 }
 
 }  // namespace sightline

@@ -20,7 +20,7 @@ OpenClStages::OpenClStages(const std::string& selector, const Scene& scene, cons
   dummy_ = context_.buffer(0, "dummy");
   for (uint32_t i = 0; i < kStageBuffers; ++i) bind(StageBuffer(i), dummy_);
 
-  std::vector<uint32_t> record_of(scene.triangles.size(), 0);
+  std::vector<uint32_t> record_of(scene.triangleCount(), 0);
   for (size_t i = bvh.references.size(); i-- > 0;) record_of[bvh.references[i]] = static_cast<uint32_t>(i);
   record_of_ = context_.buffer(record_of.size() * 4, "index of triangles");
   context_.write(record_of_, record_of.data(), record_of.size() * 4);
