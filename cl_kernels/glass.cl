@@ -97,11 +97,12 @@ static inline bool lacksGlass(const StageRef* stage, Ray ray, Hit hit) {
 
 #endif
 
+#define SL_TRACE_GLASS(X) X(counters) X(indices) X(rays) X(hits)
 /// Lists the glass that each of the rays meets no farther than its hit, pairs of ray and triangle, in `indices`: as
 /// many as list_end; counts all.
-__kernel void traceGlass(SL_STAGE_ARGS) {
+__kernel void traceGlass(SL_STAGE_ARGS(SL_TRACE_GLASS)) {
 #if SL_HAS_GLASS
-  SL_STAGE_PACK
+  SL_STAGE_PACK(SL_TRACE_GLASS)
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   for (uint i = first; i < min(first + SL_PACKET, launch.item_count); ++i) {
     GlassVisit visit;

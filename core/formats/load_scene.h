@@ -14,6 +14,8 @@ struct SceneLoadOptions {
   /// Triangles that only have a front are not there from behind: those of glTF materials that are not
   /// double-sided; of OBJ and PLY, whose files do not say, all.
   bool cull_back_faces = false;
+  /// Fill Scene::faces.
+  bool faces = false;
 };
 
 /// Loads .obj, .gltf, .glb or .ply (by extension, any case). Polygons are triangulated, concave ones too.
