@@ -36,6 +36,7 @@ class GltfLoader {
         file_bytes_(file_bytes),
         data_(data),
         name_(name),
+        opaque_masks_(options.opaque_masks),
         builder_(options),
         tree_(readTree(document, name)),
         vertices_(document, tree_, data, name, builder_),
@@ -176,6 +177,8 @@ class GltfLoader {
     const uint64_t added = builder_.triangleCount() - before;
     const bool alpha = primitive.material.alpha != GltfMaterial::Alpha::kOpaque;
     if (alpha) builder_.countAlpha(added);
+    if (primitive.material.alpha == GltfMaterial::Alpha::kMask && opaque_masks_)
+      builder_.countOpaqueMasks(added);
     if (primitive.material.glass && !alpha) builder_.countGlass(added);
     if (!primitive.material.double_sided) builder_.countSingleSided(added);
   }
@@ -264,6 +267,7 @@ class GltfLoader {
   uint64_t steps_ = 0;
   GltfData& data_;
   const std::string& name_;
+  const bool opaque_masks_;
   SceneBuilder builder_;
   GltfTree tree_;
   GltfVertices vertices_;

@@ -65,6 +65,7 @@ class SceneBuilder {
   void countRepaired(uint64_t triangles) { scene_.repaired_triangles += triangles; }
   bool repairs() const { return repair_; }
   void countAlpha(uint64_t triangles) { scene_.alpha_triangles += triangles; }
+  void countOpaqueMasks(uint64_t triangles) { scene_.opaque_mask_triangles += triangles; }
   void countGlass(uint64_t triangles) { scene_.glass_triangles += triangles; }
   void countSingleSided(uint64_t triangles) { scene_.single_sided_triangles += triangles; }
   void countHiddenNodes(uint64_t nodes) { scene_.hidden_nodes += nodes; }

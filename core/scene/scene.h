@@ -55,6 +55,7 @@ struct Scene {
   uint64_t glass_triangles = 0;         ///< others that one sees through (glTF transmission, OBJ d, Tr or
                                         ///< map_d)
   uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false
+  uint64_t opaque_mask_triangles = 0;   ///< those of glTF masks that were loaded as opaque
   uint64_t hidden_nodes = 0;            ///< left out by glTF's KHR_node_visibility, with those below them
   std::vector<std::string> warnings;    ///< a line each: what else of the file is not in the scene, or only
                                         ///< roughly

@@ -25,6 +25,16 @@ SurfaceFeatures featuresOf(const Surfaces& surfaces) {
   return {(all & kSurfaceMasked) != 0, (all & kSurfaceGlass) != 0, (all & kSurfaceFrontOnly) != 0};
 }
 
+SurfaceCounts countSurfaces(const Surfaces& surfaces) {
+  SurfaceCounts counts;
+  for (const uint32_t word : surfaces.words) {
+    counts.masked += (word & kSurfaceMasked) != 0 ? 1 : 0;
+    counts.glass += (word & kSurfaceGlass) != 0 ? 1 : 0;
+    counts.front_only += (word & kSurfaceFrontOnly) != 0 ? 1 : 0;
+  }
+  return counts;
+}
+
 std::string featureNames(const SurfaceFeatures& features) {
   std::string names;
   const auto add = [&](bool has, const char* name) {

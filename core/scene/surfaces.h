@@ -35,6 +35,12 @@ inline constexpr uint32_t kMostTexelsASide = 1u << 16;
 
 SurfaceFeatures featuresOf(const Surfaces& surfaces);
 
+/// How many triangles of each kind there are.
+struct SurfaceCounts {
+  uint64_t masked = 0, glass = 0, front_only = 0;
+};
+SurfaceCounts countSurfaces(const Surfaces& surfaces);
+
 /// "masks, glass, sides"; "none".
 std::string featureNames(const SurfaceFeatures& features);
 

@@ -155,12 +155,16 @@ TEST(Report, WarnsOfMaterialsInOneLineAndPassesOnWhatLoadingSaid) {
   EXPECT_EQ(sceneWarnings(scene), (std::vector<std::string>{"far away"}));
   scene.alpha = 3;
   scene.glass = 2;
+  scene.opaque_masks = 1;
   scene.single_sided = 4;
+  EXPECT_EQ(
+      sceneWarnings(scene),
+      (std::vector<std::string>{
+          "1 triangles with masks are traced as opaque; 4 single-sided triangles are traced as two-sided",
+          "far away"}));
+  scene.surfaces.front_only = 4;
   EXPECT_EQ(sceneWarnings(scene),
-            (std::vector<std::string>{
-                "3 triangles with alpha are traced as opaque; 2 triangles of glass are traced as "
-                "opaque; 4 single-sided triangles are traced as two-sided",
-                "far away"}));
+            (std::vector<std::string>{"1 triangles with masks are traced as opaque", "far away"}));
 }
 
 Scene threeObjects() {
