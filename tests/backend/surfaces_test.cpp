@@ -82,7 +82,7 @@ std::vector<Ray> randomRays(uint32_t seed, size_t count) {
   std::vector<Ray> rays(count);
   for (Ray& ray : rays) {
     const float ox = unit(), oy = unit(), oz = unit(), dx = unit(), dy = unit(), dz = unit();
-    ray = {vec4(ox * 2, oy * 2, oz * 2, 0), vec4(dx, dy, dz, 0)};
+    ray = {vec4(ox, oy, oz, 0), vec4(dx, dy, dz, 0)};
   }
   return rays;
 }
@@ -122,7 +122,7 @@ Meeting meet(const SurfaceScene& s, uint32_t id, const Ray& ray) {
   const uint32_t word = scene.surfaces.words[id];
   result.holds = true;
   if ((word & kSurfaceFrontOnly) != 0 && glm::dot(d, normal) > 0) result.holds = false;
-  if ((word & kSurfaceMasked) == 0) return result;
+  if ((word & kSurfaceMasked) == 0 || least < -1e-3 || result.t < -1e-3) return result;
   const Places& places = s.places[word & kSurfaceIndex];
   const uvec4 mask =
       scene.surfaces.masks[scene.surfaces.masked[word & kSurfaceIndex].corner_c_mask.z].size_wrap_first;
@@ -244,7 +244,7 @@ TEST_P(SurfacesOn, AreTheSameBitForBitOnExactDevices) {
   const size_t allowed = isExact(GetParam()) ? 0 : 8;  // the driver's own test of triangles
   EXPECT_LE(hits, allowed);
   EXPECT_LE(beside.size(), allowed);
-  EXPECT_GT(expected.glass.size(), 10'000u);
+  EXPECT_GT(expected.glass.size(), 4'000u);
 }
 
 BakeParams surfaceParams() {
@@ -291,7 +291,7 @@ TEST(Surfaces, EmbreeSeesTheSame) {
   std::ranges::set_symmetric_difference(ours.glass, theirs.glass, std::back_inserter(beside));
   EXPECT_LT(hits, 100u);  // its shares of corners are floats: texels of large repeated masks differ
   EXPECT_LT(beside.size(), 200u);
-  EXPECT_GT(ours.glass.size(), 10'000u);
+  EXPECT_GT(ours.glass.size(), 4'000u);
 }
 
 /// A leaf before a wall of small squares: through each hole of the leaf the rays from the axis see one
@@ -335,7 +335,8 @@ TEST(Surfaces, FrontsAreCounterClockwiseAndBacksAreNotThere) {
   SurfaceScene s;
   addTriangle(s.scene, {-1, -1, 0}, {1, -1, 0}, {0, 1, 0}, kSurfaceFrontOnly);
   const Bvh bvh = buildBvh(s.scene.positions, s.scene.triangles);
-  const glm::mat3 turns[] = {glm::mat3(1), glm::mat3(0, 1, 0, 0, 0, 1, 1, 0, 0), glm::mat3(0, 0, 1, 1, 0, 0, 0, 1, 0)};
+  const glm::mat3 turns[] = {glm::mat3(1), glm::mat3(0, 1, 0, 0, 0, 1, 1, 0, 0),
+                             glm::mat3(0, 0, 1, 1, 0, 0, 0, 1, 0)};
   for (const glm::mat3& turn : turns) {
     Scene turned = s.scene;
     for (vec3& p : turned.positions) p = turn * p;
