@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -288,8 +289,10 @@ GltfDocument readGltfDocument(const nlohmann::json& root, const std::string& fil
   for (const JsonObject& object : document.objects("accessors")) {
     result.accessors.push_back(readAccessor(object, result.views.size()));
   }
-  result.images = readImages(document, result.views.size());
   const std::vector<GltfMaterial> materials = readMaterials(document);
+  if (std::ranges::any_of(materials, [](const GltfMaterial& m) { return m.texture && m.texture->image; })) {
+    result.images = readImages(document, result.views.size());
+  }
   for (const JsonObject& object : document.objects("meshes")) {
     result.meshes.push_back(readMesh(object, result.accessors.size(), materials));
   }
