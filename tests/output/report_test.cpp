@@ -22,7 +22,7 @@ using nlohmann::json;
 BakeReport exampleReport() {
   BakeReport report;
   report.version = "1.2.3";
-  report.scene = {"room.obj", 0xabcdef, 1000, 700, 3, 1, 2, 4, 6, 5, 7, {"far off"}};
+  report.scene = {"room.obj", 0xabcdef, 1000, 700, 3, 1, 2, 4, 6, 5, 7, 0, {}, {"far off"}};
   report.baked_on = "cpu";
   report.device = DeviceInfo{"cpu", "host", "built in", "8-wide", "", 5};
   report.tree = TreeSummary{0.5, 12.5, 9, 10, 20, 1100, 9000};
