@@ -47,6 +47,11 @@ class Judge {
   /// ascending.
   std::vector<uint32_t> near(const JudgeRay& ray, double reach, double limit) const;
 
+  /// Whether rays may pass inside the triangle's edges: through holes, or from behind.
+  bool isPassable(uint32_t triangle) const {
+    return (scene_.surfaces.of(triangle) & (kSurfaceMasked | kSurfaceFrontOnly)) != 0;
+  }
+
   /// The corners of a triangle.
   JudgeTriangle corners(uint32_t triangle) const;
   uint32_t triangleCount() const { return scene_.triangleCount(); }

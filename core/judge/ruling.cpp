@@ -192,7 +192,7 @@ Ruling rule(const Judge& judge, const Ray& float_ray, const Hit& answer, const E
     const bool meets = exact.contains(answer.triangle) || judge.meets(ray, answer.triangle);
     const SeenTriangle seen(judge.corners(answer.triangle), ray, RayFrame(ray.direction));
     if (!meets) ruling.steps_beside = seen.distance() / step;
-    if (!meets && ruling.steps_beside == 0)
+    if (!meets && ruling.steps_beside == 0 && judge.isPassable(answer.triangle))
       ruling.steps_beside = stepsOutOfHole(judge, ray, answer.triangle, step, limit);
     const DoubleRange t = possibleDistances(judge, ray, answer.triangle, limit.steps * step);
     const double rounding = std::fabs(t.high) * 4 * kFloatRounding;
