@@ -3,13 +3,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <set>
 
 #include "core/api/bake.h"
+#include "core/device/registry/make_device.h"
 #include "core/place/outside_cells.h"
 #include "core/strip/lost_rays.h"
-#include "core/trace/cpu_tracer.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/boxes.h"
 #include "tests/support/random_triangles.h"
@@ -140,20 +141,13 @@ TEST(OutsideCells, HoldWhatViewersOutsideSee) {
   }
 }
 
-/// Traces on the processor, one ray after the other.
-class PlainTracer : public Tracer {
- public:
-  explicit PlainTracer(const Scene& scene)
-      : bvh_(buildBvh(scene.positions, scene.triangles)), tracer_(scene, bvh_) {}
-  DeviceInfo info() const override { return {}; }
-  void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override {
-    for (size_t i = 0; i < rays.size(); ++i) hits[i] = tracer_.trace(rays[i]);
-  }
-  void traceViews(std::span<const ViewFrame>, uint32_t, std::span<uint32_t>) override {}
-
- private:
-  Bvh bvh_;
-  CpuTracer tracer_;
+/// A scene on the cpu device, with the tree that it needs.
+struct OnCpu {
+  explicit OnCpu(const Scene& scene)
+      : bvh(buildBvh(scene.positions, scene.triangles)), device(makeDevice("cpu", scene, bvh)) {}
+  operator Tracer&() { return *device; }
+  Bvh bvh;
+  std::unique_ptr<Device> device;
 };
 
 TEST(LostRays, CountsWhatWentAndIsSeen) {
@@ -168,8 +162,7 @@ TEST(LostRays, CountsWhatWentAndIsSeen) {
   Scene turned = whole;
   for (glm::uvec3& t : turned.triangles) t = {t.y, t.z, t.x};
   const ViewCell cell{"c", {4, 2, 1}, {8, 4, 0}, {0, 180, 0}};
-  PlainTracer whole_tracer(whole), left_tracer(left), right_tracer(right), far_tracer(far),
-      turned_tracer(turned);
+  OnCpu whole_tracer(whole), left_tracer(left), right_tracer(right), far_tracer(far), turned_tracer(turned);
   const auto lost = [&](const Scene& scene, Tracer& tracer) {
     uint32_t rays = 20'000;
     return countLostRays({whole, whole_tracer}, {scene, tracer}, cell, 0, 1, rays);
