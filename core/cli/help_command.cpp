@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/cli/commands.h"
-#include "core/cli/nearest.h"
+#include "core/base/nearest.h"
 
 namespace sightline {
 namespace {

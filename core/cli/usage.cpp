@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/cli/command_line.h"
-#include "core/cli/nearest.h"
+#include "core/base/nearest.h"
 
 namespace sightline {
 namespace {
