@@ -23,12 +23,14 @@ const Bvh& SessionParts::tree() {
   return *bvh;
 }
 
-Device& SessionParts::device(Method method) {
-  std::unique_ptr<Device>& wanted = method == Method::kNaive ? naive : plain;
-  if (wanted) return *wanted;
+Device& SessionParts::device(Method method, float hole) {
+  const bool on_host = method == Method::kNaive || hole > 0;
+  std::unique_ptr<Device>& wanted = on_host ? naive : plain;
+  if (wanted && (!on_host || hole == smallest_hole)) return *wanted;
+  wanted.reset();
   requireDevice(options.device);  // before the work that the tree takes
   wanted = makeDevice(options.device, scene, tree(), options.device_options);
-  if (method == Method::kNaive) wanted = makeNaiveDevice(std::move(wanted), scene);
+  if (on_host) wanted = makeNaiveDevice(std::move(wanted), scene, smallest_hole = hole);
   return *wanted;
 }
 

@@ -7,6 +7,7 @@
 #include "core/cell/cell_problem.h"
 #include "core/io/file_io.h"
 #include "core/pvs/param_table.h"
+#include "core/pvs/pvs_sections.h"
 
 namespace sightline {
 namespace {
@@ -51,6 +52,12 @@ auto loadEarlier(Load load, const std::filesystem::path& file) {
   }
 }
 
+std::string namesText(const std::vector<NamedTriangles>& objects) {
+  std::string names;
+  for (const NamedTriangles& object : objects) names += (names.empty() ? "" : ", ") + object.name;
+  return names.empty() ? "none" : names;
+}
+
 std::string intersectorText(const std::string& intersector) {
   return intersector.empty() ? "that of cpu and opencl" : "that of " + intersector;
 }
@@ -59,7 +66,8 @@ std::string intersectorText(const std::string& intersector) {
 
 std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile& wanted) {
   std::vector<std::string> differences;
-  compare(differences, "version of the format", earlier.version, wanted.version);
+  const bool outdated = earlier.version < kPvsVersionWithCosts;
+  if (outdated) compare(differences, "version of the format", earlier.version, versionOf(wanted));
   compare(differences, "revision of the algorithm", earlier.algorithm, wanted.algorithm);
   compare(differences, "intersection test", intersectorText(earlier.intersector),
           intersectorText(wanted.intersector));
@@ -74,6 +82,10 @@ std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile&
     compare(differences, param.name, valueText(param, earlier.params), valueText(param, wanted.params));
   }
   compare(differences, "witnesses", earlier.has_witnesses, wanted.has_witnesses);
+  compare(differences, "doors", namesText(earlier.doors), namesText(wanted.doors));
+  if (earlier.doors != wanted.doors && namesText(earlier.doors) == namesText(wanted.doors)) {
+    differences.push_back("doors (of the same names, but of other triangles)");
+  }
   return differences;
 }
 

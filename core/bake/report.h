@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "bvh/bvh.h"
+#include "core/base/named_triangles.h"
 #include "core/device/device.h"
+#include "core/gvs/leaks.h"
 #include "core/pvs/cell_summary.h"
 #include "core/scene/cell_check.h"
 #include "core/scene/scene.h"
@@ -45,6 +47,8 @@ struct BakeReport {
   BakeParams params;
   std::vector<CellSummary> cells;                  ///< finished, in order
   std::vector<std::vector<CellWarning>> warnings;  ///< checkCells of all planned cells; empty: not checked
+  std::vector<std::optional<Leaks>> leaks;  ///< of `cells`, as far as this run baked them and looked
+  std::vector<NamedTriangles> doors;        ///< of the bake
   uint64_t planned_cells = 0;
   uint64_t resumed_cells = 0;       ///< of `cells`: baked by an earlier run
   double seconds = 0;               ///< of this run: loading, tree, cells
@@ -61,6 +65,9 @@ std::string reportJson(const BakeReport& report);
 /// single-sided as two-sided), for nodes left out, and for each warning of loading; empty if there is
 /// nothing.
 std::vector<std::string> sceneWarnings(const SceneSummary& scene);
+
+/// What there is to say about the leaks of a cell, after its name; empty: nothing.
+std::string leaksText(const Leaks& leaks);
 
 /// Most memory that this process has held, in bytes (VmHWM).
 uint64_t peakProcessBytes();

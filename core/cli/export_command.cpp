@@ -7,6 +7,7 @@
 #include "core/bake/require_scene.h"
 #include "core/base/error.h"
 #include "core/cli/commands.h"
+#include "core/cli/doors_option.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/text_outputs.h"
 #include "core/export/export.h"
@@ -23,6 +24,7 @@ namespace {
 struct ExportOptions {
   std::filesystem::path pvs, out, scene;
   std::string cell, format;
+  DoorState doors = DoorState::kClosed;
 };
 
 /// saveScene goes by the extension, so it must say the same as --format.
@@ -47,7 +49,7 @@ void runExport(const ExportOptions& options) {
   }
   requireSeparate(std::array{options.out}, std::array{options.pvs, options.scene});
   const TextOutputs outputs({&options.out, 1});
-  const PvsFile pvs = loadFinishedCells(options.pvs);
+  const PvsFile pvs = inState(loadFinishedCells(options.pvs), options.doors, options.pvs);
   const CellPvs& cell = chooseCell(pvs, options.cell, options.pvs);
   std::optional<Scene> scene;
   if (!options.scene.empty()) {
@@ -88,6 +90,7 @@ void addExportCommand(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--scene", options->scene, "the baked scene: for obj and glb, and for json's objects")
       ->type_name("SCENE");
+  declareDoors(*command, options->doors);
   command->callback([options] { runExport(*options); });
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,13 @@ struct Witness {
   uint32_t stage = kStageRandom;  ///< kStage...; of a contained triangle origin and direction are 0
 };
 
+/// What a cell sees besides its set when the bake's doors are open.
+struct OpenSet {
+  CellStats stats;                  ///< of the bake of the scene without its doors, by the same seed
+  std::vector<uint32_t> triangles;  ///< ids that the set has not, ascending, unique
+  std::vector<Witness> witnesses;   ///< one a triangle, or empty: hits it first where the doors are away
+};
+
 /// The potentially visible set of one cell.
 struct CellPvs {
   ViewCell cell;
@@ -22,6 +30,7 @@ struct CellPvs {
   std::string device;               ///< DeviceInfo::id and name of the device that baked it
   std::vector<uint32_t> triangles;  ///< ids, ascending, unique
   std::vector<Witness> witnesses;   ///< one a triangle, or empty
+  std::optional<OpenSet> open;      ///< of a bake with doors, which are closed in the set itself
 };
 
 }  // namespace sightline

@@ -9,6 +9,7 @@
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
 #include "core/shared/set.h"
+#include "core/trace/narrow_gap.h"
 
 namespace sightline {
 namespace {
@@ -28,7 +29,8 @@ class NaiveDevice final : public Device {
   }
 
  public:
-  NaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) : inner_(std::move(inner)), scene_(scene) {}
+  NaiveDevice(std::unique_ptr<Device> inner, const Scene& scene, float smallest_hole)
+      : inner_(std::move(inner)), scene_(scene), smallest_hole_(smallest_hole) {}
 
   DeviceInfo info() const override {
     DeviceInfo info = inner_->info();
@@ -49,7 +51,9 @@ class NaiveDevice final : public Device {
   void traceRandom(const RandomSegment& segment) override {
     trace(
         slotCount(segment), [&] { return slotRays(segment, params_.shifts); },
-        [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
+        [&](const BatchRay& ray, const Hit& hit, bool counts) {
+          if (counts) insert(hit.triangle, ray);
+        });
   }
 
   BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
@@ -60,8 +64,8 @@ class NaiveDevice final : public Device {
     const BorderRays batch(scene_, pending, starts, params_);
     std::vector<uint32_t> border_hits(starts.back(), isGvs(params_) ? kNotTraced : kNoTriangle);
     std::vector<uint8_t> is_discontinuity(starts.back(), 0);
-    const auto take = [&](const BatchRay& ray, const Hit& hit) {
-      insert(hit.triangle, ray);
+    const auto take = [&](const BatchRay& ray, const Hit& hit, bool counts) {
+      if (counts) insert(hit.triangle, ray);
       const uint32_t index = ray.index - 1;
       border_hits[index] = hit.triangle;
       if (!listing) return;
@@ -91,7 +95,9 @@ class NaiveDevice final : public Device {
   void traceReverse(uint32_t first, uint32_t count) override {
     trace(
         uint64_t(count) * reverseRayCount(params_), [&] { return reverseRays(first); },
-        [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
+        [&](const BatchRay& ray, const Hit& hit, bool counts) {
+          if (counts) insert(hit.triangle, ray);
+        });
   }
 
   uint32_t collect(uint32_t stage) override {
@@ -116,9 +122,10 @@ class NaiveDevice final : public Device {
     uint64_t missing = 0;
     trace(
         slotCount(segment), [&] { return slotRays(segment, shifts); },
-        [&](const BatchRay&, const Hit& hit) {
-          missing += hit.triangle != kNoTriangle && !set_.contains(hit.triangle) ? 1 : 0;
-        });
+        [&](const BatchRay&, const Hit& hit, bool counts) {
+          missing += counts && hit.triangle != kNoTriangle && !set_.contains(hit.triangle) ? 1 : 0;
+        },
+        EachCandidate::kTested);
     return missing;
   }
 
@@ -162,9 +169,15 @@ class NaiveDevice final : public Device {
     }
   }
 
+  /// Whether all rays that would change the set are tested for gaps, or for each triangle no more than it
+  /// takes to find the first that has room.
+  enum class EachCandidate { kTested, kUntilOneCounts };
+
   /// Traces the rays 0 .. count - 1 of generators that makeGenerator() returns, and hands those that have a
-  /// direction with their hits to take(ray, hit), in order.
-  void trace(uint64_t count, auto&& makeGenerator, auto&& take) {
+  /// direction with their hits to take(ray, hit, counts), in order. counts: false for a ray that is pinched, of
+  /// which the hit is what stands nearer at its side.
+  void trace(uint64_t count, auto&& makeGenerator, auto&& take,
+             EachCandidate candidates = EachCandidate::kUntilOneCounts) {
     for (uint64_t first = 0; first < count; first += kChunk) {
       const auto size = static_cast<size_t>(std::min<uint64_t>(kChunk, count - first));
       batch_.resize(size);
@@ -178,16 +191,78 @@ class NaiveDevice final : public Device {
         }
       });
       inner_->traceRays(rays_, hits_);
+      counts_.assign(size, 1);
+      if (smallest_hole_ > 0) dropPinched(candidates);
       for (size_t i = 0; i < size; ++i) {
         if (!hasDirection(rays_[i])) continue;
         ++rays_traced_;
-        take(batch_[i], hits_[i]);
+        take(batch_[i], hits_[i], counts_[i] != 0);
       }
+    }
+  }
+
+  /// Rays of the chunk that would change the set, by triangle, of each in ascending index.
+  std::vector<uint32_t> candidatesOf() const {
+    std::vector<uint32_t> candidates;
+    for (uint32_t i = 0; i < hits_.size(); ++i) {
+      if (hits_[i].triangle == kNoTriangle || !hasDirection(rays_[i])) continue;
+      const auto found = set_.find(hits_[i].triangle);
+      if (found == set_.end() || batch_[i].index < found->second.index) candidates.push_back(i);
+    }
+    std::sort(candidates.begin(), candidates.end(), [&](uint32_t a, uint32_t b) {
+      const uint32_t of_a = hits_[a].triangle, of_b = hits_[b].triangle;
+      return of_a != of_b ? of_a < of_b : batch_[a].index < batch_[b].index;
+    });
+    return candidates;
+  }
+
+  /// Tests the chunk's candidates for gaps: of each triangle the first, then the next two, the next four, ...
+  /// until one counts.
+  void dropPinched(EachCandidate tested) {
+    struct Run {
+      uint32_t next, end;  // in `candidates`, all of one triangle
+    };
+    const std::vector<uint32_t> candidates = candidatesOf();
+    std::vector<Run> runs;
+    for (uint32_t i = 0; i < candidates.size();) {
+      Run run{i, i + 1};
+      while (run.end < candidates.size() &&
+             hits_[candidates[run.end]].triangle == hits_[candidates[i]].triangle) {
+        ++run.end;
+      }
+      runs.push_back(run);
+      i = run.end;
+    }
+    for (uint32_t most = tested == EachCandidate::kTested ? ~0u : 1; !runs.empty(); most *= 2) {
+      std::vector<Ray> rays;
+      std::vector<Hit> hits;
+      for (const Run& run : runs) {
+        for (uint32_t i = run.next; i < run.end && i - run.next < most; ++i) {
+          rays.push_back(rays_[candidates[i]]);
+          hits.push_back(hits_[candidates[i]]);
+        }
+      }
+      std::vector<Pinch> pinches;
+      rays_traced_ += findPinched(*inner_, smallest_hole_, rays, hits, pinches);
+      size_t at = 0;
+      std::erase_if(runs, [&](Run& run) {
+        const uint32_t end = run.end - run.next < most ? run.end : run.next + most;
+        bool any_counts = false;
+        for (; run.next < end; ++run.next, ++at) {
+          const uint32_t i = candidates[run.next];
+          any_counts = any_counts || !pinches[at].pinched;
+          if (!pinches[at].pinched) continue;
+          counts_[i] = 0;
+          hits_[i] = pinches[at].nearer;
+        }
+        return run.next == run.end || any_counts;
+      });
     }
   }
 
   std::unique_ptr<Device> inner_;
   const Scene& scene_;
+  float smallest_hole_;
   std::vector<Face> faces_;
   StageParams params_{};
   std::unordered_map<uint32_t, Found> set_;
@@ -199,12 +274,14 @@ class NaiveDevice final : public Device {
   std::vector<BatchRay> batch_;  ///< of a chunk
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
+  std::vector<uint8_t> counts_;  ///< a ray of the chunk: 0 if it is pinched
 };
 
 }  // namespace
 
-std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) {
-  return std::make_unique<NaiveDevice>(std::move(inner), scene);
+std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene,
+                                        float smallest_hole) {
+  return std::make_unique<NaiveDevice>(std::move(inner), scene, smallest_hole);
 }
 
 }  // namespace sightline
