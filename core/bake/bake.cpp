@@ -66,8 +66,9 @@ std::string intersectorText(const std::string& intersector) {
 
 std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile& wanted) {
   std::vector<std::string> differences;
-  const bool outdated = earlier.version < kPvsVersionWithCosts;
-  if (outdated) compare(differences, "version of the format", earlier.version, versionOf(wanted));
+  // What the later versions add is compared by itself, so only what the program no longer writes differs.
+  const auto formatOf = [](const PvsFile& pvs) { return std::min(pvs.version, kPvsVersionWithCosts); };
+  compare(differences, "version of the format", formatOf(earlier), formatOf(wanted));
   compare(differences, "revision of the algorithm", earlier.algorithm, wanted.algorithm);
   compare(differences, "intersection test", intersectorText(earlier.intersector),
           intersectorText(wanted.intersector));

@@ -21,7 +21,8 @@
 // reaches both rims (1.02 cos 11.25 = 1). A ray around which a tube of radius 1.02 W is free up to 4 W before
 // its hit is not: so none that goes through the middle of a hole wider than 2.04 W. Corners are no gaps: of two
 // walls that meet at more than 29 degrees the neighbours stop by at most 4 W before the ray. What lies less
-// than 4 W behind a gap counts as part of its rims.
+// than 4 W behind a gap counts as part of its rims, and a gap that lies nearer than W to where the ray begins may
+// be passed: cells keep that far from walls.
 namespace sightline {
 
 /// What stands on both sides of a ray.

@@ -1,0 +1,252 @@
+// Gaps that are too narrow to count: single rays through slits and holes, both ways, and the sets of bakes.
+#include "core/trace/narrow_gap.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/api/bake.h"
+#include "core/bake/bake.h"
+#include "core/device/naive/naive_device.h"
+#include "core/device/registry/make_device.h"
+#include "core/gvs/leaks.h"
+#include "core/scene/find_objects.h"
+#include "tests/support/bake_scene.h"
+#include "tests/support/leaky_room.h"
+#include "tests/support/make_cell.h"
+#include "tests/support/random_triangles.h"
+
+namespace sightline {
+namespace {
+
+using testing_support::idRange;
+using testing_support::LeakyRoom;
+using testing_support::makeCell;
+using testing_support::quickParams;
+using testing_support::Random;
+using testing_support::SceneOfBoxes;
+
+/// A wall of two sheets in the plane z = 0 with a slit of this width about x = 0, and far behind it a wall.
+Scene slitScene(float gap) {
+  SceneOfBoxes boxes;
+  boxes.addRectangle({-50, -50, 0}, {50 - gap / 2, 0, 0}, {0, 100, 0});
+  boxes.addRectangle({gap / 2, -50, 0}, {50 - gap / 2, 0, 0}, {0, 100, 0});
+  boxes.addRectangle({-500, -500, 30}, {1000, 0, 0}, {0, 1000, 0});
+  return boxes.finish();
+}
+constexpr uint32_t kBehind = 4;
+
+/// Rays that begin so far before the slit, at least, and pass it at a random place, in a random direction up to
+/// 70 degrees from the wall's normal.
+std::vector<Ray> raysThrough(float gap, float before, size_t count, Random& random) {
+  std::vector<Ray> rays;
+  while (rays.size() < count) {
+    const vec3 through((random.unit() - 0.5f) * gap * 0.999f, random.unit() * 4 - 2, 0);
+    const vec3 direction = vec3(random.unit() * 4 - 2, random.unit() * 4 - 2, 1) * (0.5f + random.unit());
+    rays.push_back({vec4(through - direction * (before / direction.z * (1 + random.unit())), 0), vec4(direction, 0)});
+  }
+  return rays;
+}
+
+struct Counts {
+  uint64_t through = 0, pinched = 0;
+};
+
+Counts pinchedThrough(float gap, float width) {
+  const Scene scene = slitScene(gap);
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const auto device = makeDevice("cpu", scene, bvh);
+  Random random(7);
+  const std::vector<Ray> rays = raysThrough(gap, 1 + 2 * width, 2000, random);
+  std::vector<Hit> hits(rays.size());
+  device->traceRays(rays, hits);
+  std::vector<Pinch> pinches;
+  findPinched(*device, width, rays, hits, pinches);
+  Counts counts;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].triangle < kBehind) continue;
+    ++counts.through;
+    if (!pinches[i].pinched) continue;
+    ++counts.pinched;
+    EXPECT_LT(pinches[i].nearer.triangle, kBehind);
+    EXPECT_LT(std::abs(pinches[i].place.z), 1e-5f) << "the gap lies in the wall";
+    EXPECT_LT(std::abs(pinches[i].place.x), 8 * width);
+  }
+  return counts;
+}
+
+class SlitOf : public testing::TestWithParam<float> {};
+
+TEST_P(SlitOf, NoRayThroughANarrowerOneCounts) {
+  for (const float share : {0.02f, 0.3f, 0.7f, 0.99f}) {
+    const Counts counts = pinchedThrough(GetParam(), GetParam() / share);
+    EXPECT_GT(counts.through, 1900u);
+    EXPECT_EQ(counts.pinched, counts.through) << share;
+  }
+}
+
+/// At a slant, a slit is as wide as it looks: the rays straight at it have room.
+TEST_P(SlitOf, RaysThroughAWiderOneCount) {
+  const float gap = GetParam();
+  const Scene scene = slitScene(gap);
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const auto device = makeDevice("cpu", scene, bvh);
+  Random random(9);
+  for (const float times : {2.05f, 3.0f, 50.0f}) {
+    std::vector<Ray> rays = raysThrough(gap, 1, 2000, random);
+    for (Ray& ray : rays) {  // along the slit they may slant
+      const float x = ray.origin.x - ray.direction.x / ray.direction.z * ray.origin.z;
+      ray.origin.x = x;
+      ray.direction.x = 0;
+    }
+    std::vector<Hit> hits(rays.size());
+    device->traceRays(rays, hits);
+    std::vector<Pinch> pinches;
+    findPinched(*device, gap / times, rays, hits, pinches);
+    for (size_t i = 0; i < rays.size(); ++i) EXPECT_FALSE(pinches[i].pinched) << times << " ray " << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Millimetres, SlitOf, testing::Values(0.0001f, 0.001f, 0.01f, 0.05f));
+
+/// A round hole is narrow in every direction; and a pole in the open pinches nothing.
+TEST(NarrowGap, HolesAndPoles) {
+  SceneOfBoxes boxes;
+  constexpr int kSides = 24;
+  const auto at = [](int i, float radius) {
+    const double angle = 2 * std::numbers::pi * i / kSides;
+    return vec3(radius * float(std::cos(angle)), radius * float(std::sin(angle)), 0);
+  };
+  for (int i = 0; i < kSides; ++i) {
+    boxes.addTriangle(at(i, 0.005f), at(i, 20), at(i + 1, 20));
+    boxes.addTriangle(at(i, 0.005f), at(i + 1, 20), at(i + 1, 0.005f));
+  }
+  const uint32_t wall = boxes.addRectangle({-50, -50, 9}, {100, 0, 0}, {0, 100, 0});
+  boxes.addBox({-1.001f, -5, 4}, {-0.999f, 5, 4.002f});  // a pole of 2 mm behind
+  const Scene scene = boxes.finish();
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const auto device = makeDevice("cpu", scene, bvh);
+  const auto isPinched = [&](const vec3& origin, float width) {
+    const Ray ray{vec4(origin, 0), vec4(0, 0, 1, 0)};
+    std::vector<Hit> hits(1);
+    device->traceRays({&ray, 1}, hits);
+    EXPECT_GE(hits[0].triangle, wall);
+    std::vector<Pinch> pinches;
+    findPinched(*device, width, {&ray, 1}, hits, pinches);
+    return pinches[0].pinched;
+  };
+  for (const float x : {-0.004f, 0.0f, 0.002f}) {
+    EXPECT_TRUE(isPinched({x, 0, -1}, 0.0101f)) << x;
+    EXPECT_FALSE(isPinched({0, 0, -1}, 0.0048f));
+  }
+  EXPECT_FALSE(isPinched({-0.99f, 0, 1}, 0.05f)) << "a pole on one side only";
+}
+
+/// The corner of a room is no gap, however fine its triangles.
+TEST(NarrowGap, CornersAreNoGaps) {
+  SceneOfBoxes boxes;
+  boxes.addRectangle({-5, 0, -5}, {10, 0, 0}, {0, 0, 10});
+  boxes.addRectangle({-5, 0, 5}, {10, 0, 0}, {0, 10, 0});
+  boxes.addRectangle({5, 0, -5}, {0, 0, 10}, {0, 10, 0});
+  const Scene scene = boxes.finish();
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const auto device = makeDevice("cpu", scene, bvh);
+  Random random(3);
+  std::vector<Ray> rays;
+  for (int i = 0; i < 2000; ++i) {
+    const vec3 from(random.unit() * 8 - 4, 0.5f + random.unit() * 3, random.unit() * 8 - 4);
+    const vec3 to(5 - 0.02f * random.unit() * random.unit(), 0.02f * random.unit(), 5 - 0.02f * random.unit());
+    rays.push_back({vec4(from, 0), vec4(to - from, 0)});
+  }
+  std::vector<Hit> hits(rays.size());
+  device->traceRays(rays, hits);
+  std::vector<Pinch> pinches;
+  findPinched(*device, 0.01f, rays, hits, pinches);
+  for (size_t i = 0; i < rays.size(); ++i) EXPECT_FALSE(pinches[i].pinched) << i;
+}
+
+CellPvs bakeHole(const std::string& driver, const Scene& scene, float hole) {
+  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  BakeParams params = quickParams();
+  params.smallest_hole = hole;
+  auto device = makeDevice(driver, scene, bvh);
+  if (hole > 0) device = makeNaiveDevice(std::move(device), scene, hole);
+  return bakeCell(*device, scene, makeCell({0, 1.5, 0}, {0.5, 0.5, 0.5}), 0, params);
+}
+
+uint64_t behindWalls(const LeakyRoom& room, const CellPvs& pvs) {
+  return uint64_t(std::ranges::count_if(pvs.triangles, [&](uint32_t id) { return id >= room.mosaic; }));
+}
+
+TEST(SmallestHole, ClosesNarrowerGapsOfARoomAndNoWiderOnes) {
+  const LeakyRoom closed(0, 16), narrow(0.002f, 16), wide(0.05f, 16);
+  EXPECT_EQ(behindWalls(closed, bakeHole("cpu", closed.scene, 0)), 0u);
+  const uint64_t leaking = behindWalls(narrow, bakeHole("cpu", narrow.scene, 0));
+  EXPECT_GT(leaking, 10u);
+  const CellPvs without_leaks = bakeHole("cpu", narrow.scene, 0.0021f);
+  EXPECT_EQ(behindWalls(narrow, without_leaks), 0u);
+  EXPECT_EQ(without_leaks.stats.missing_rays, 0u);
+  // What is in the room stays.
+  const CellPvs exact = bakeHole("cpu", narrow.scene, 0);
+  EXPECT_GE(without_leaks.triangles.size() + leaking + 24 * 4, exact.triangles.size());
+  // Gaps of 50 mm are open for holes of half their width.
+  const CellPvs open = bakeHole("cpu", wide.scene, 0), same = bakeHole("cpu", wide.scene, 0.0125f);
+  EXPECT_GT(behindWalls(wide, open), 20u);
+  EXPECT_GE(double(behindWalls(wide, same)), 0.98 * double(behindWalls(wide, open)));
+}
+
+TEST(SmallestHole, IsTheSameOnEveryDeviceAndRun) {
+  const LeakyRoom room(0.005f, 8);
+  const CellPvs cpu = bakeHole("cpu", room.scene, 0.004f), opencl = bakeHole("opencl", room.scene, 0.004f);
+  EXPECT_EQ(cpu.triangles, opencl.triangles);
+  for (size_t i = 0; i < cpu.witnesses.size(); ++i) {
+    EXPECT_EQ(cpu.witnesses[i].origin, opencl.witnesses[i].origin) << i;
+  }
+}
+
+/// Each witness has room on its way: what is in the set is right.
+TEST(SmallestHole, WitnessesHaveRoom) {
+  const LeakyRoom room(0.012f, 8);
+  constexpr float kHole = 0.008f;
+  const CellPvs pvs = bakeHole("cpu", room.scene, kHole);
+  const Bvh bvh = buildBvh(room.scene.positions, room.scene.triangles);
+  const auto device = makeDevice("cpu", room.scene, bvh);
+  std::vector<Ray> rays;
+  for (const Witness& w : pvs.witnesses) rays.push_back({vec4(w.origin, 0), vec4(w.direction, 0)});
+  std::vector<Hit> hits(rays.size());
+  device->traceRays(rays, hits);
+  std::vector<Pinch> pinches;
+  findPinched(*device, kHole, rays, hits, pinches);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(hits[i].triangle, pvs.triangles[i]);
+    EXPECT_FALSE(pinches[i].pinched) << pvs.triangles[i];
+  }
+}
+
+TEST(Leaks, AreTheTrianglesBehindGaps) {
+  const LeakyRoom room(0.0002f, 16), closed(0, 16);
+  const Bvh bvh = buildBvh(room.scene.positions, room.scene.triangles);
+  const auto device = makeDevice("cpu", room.scene, bvh);
+  const CellPvs pvs = bakeHole("cpu", room.scene, 0);
+  const uint64_t behind = behindWalls(room, pvs);
+  ASSERT_GT(behind, 3u);
+  const Leaks leaks = findLeaks(*device, room.scene, pvs, leakWidth(pvs.cell));
+  EXPECT_FLOAT_EQ(leaks.width, 0.0005f);
+  // Besides, the panels' sides in the gaps may count, which lie behind them, too.
+  EXPECT_GE(leaks.triangles, behind);
+  EXPECT_LE(leaks.triangles, behind + 24 * 4);
+  const glm::dvec3 at = glm::abs(leaks.place);
+  EXPECT_NEAR(std::max(at.x, at.z), 3, 0.11) << "in a wall";
+  const Leaks again = findLeaks(*device, room.scene, pvs, leakWidth(pvs.cell));
+  EXPECT_EQ(again.triangles, leaks.triangles);
+  EXPECT_EQ(again.rays, leaks.rays);
+  EXPECT_LE(leaks.rays, 17 * pvs.triangles.size() + 289 * (leaks.triangles + 100));
+
+  const CellPvs tight = bakeHole("cpu", closed.scene, 0);
+  const Bvh closed_bvh = buildBvh(closed.scene.positions, closed.scene.triangles);
+  const auto closed_device = makeDevice("cpu", closed.scene, closed_bvh);
+  EXPECT_EQ(findLeaks(*closed_device, closed.scene, tight, leakWidth(tight.cell)).triangles, 0u);
+}
+
+}  // namespace
+}  // namespace sightline
