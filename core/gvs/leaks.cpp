@@ -59,7 +59,7 @@ class LeakSearch {
   void trace(const std::vector<Ray>& rays) {
     hits_.resize(rays.size());
     tracer_.traceRays(rays, hits_);
-    leaks_.rays += rays.size() + findPinched(tracer_, leaks_.width, rays, hits_, pinches_);
+    leaks_.rays += rays.size() + findPinched(tracer_, scene_, leaks_.width, rays, hits_, pinches_);
   }
 
   std::vector<Suspect> pinchedFrom(size_t first) {

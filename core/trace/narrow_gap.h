@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "core/scene/scene.h"
 #include "core/shared/types.h"
 #include "core/trace/tracer.h"
 
@@ -10,19 +11,24 @@
 // see everything behind; geometry that counts as closed where a gap is narrower than W answers the question
 // "what is seen through holes wider than that".
 //
-//                 #  wall             A ray is pinched if for one of eight directions across it both of its
-//   u ------------# blocked           neighbours, at the distance h = 1.02 W to either side, are stopped by
-//   o ------------------->  hit       more than 4 W before its own hit.
-//  -u ------------# blocked
-//                 #                   All eight look along straight lines across the ray, 22.5 degrees apart.
+//            #  wall
+//         h  # p      A neighbour of a ray is one beside it, in the same direction, at the distance h = 1.02 W.
+//   ------------->    It is stopped where it hits something by more than 4 W before the ray does. A ray is
+//         h  # q      pinched if, for one of eight directions, 22.5 degrees apart, in the plane of a wall beside
+//            #        it, the neighbours on both sides are stopped, at p and at q, and p is no farther than
+//                     2.01 h from the triangle that q lies on, or q from that of p.
 //
-// What follows: a ray through a straight gap, or a hole of any convex shape, narrower than W is pinched,
-// wherever in the gap it runs: some of the eight directions is within 11.25 degrees of the narrowest, so h
-// reaches both rims (1.02 cos 11.25 = 1). A ray around which a tube of radius 1.02 W is free up to 4 W before
-// its hit is not: so none that goes through the middle of a hole wider than 2.04 W. Corners are no gaps: of two
-// walls that meet at more than 29 degrees the neighbours stop by at most 4 W before the ray. What lies less
-// than 4 W behind a gap counts as part of its rims, and a gap that lies nearer than W to where the ray begins may
-// be passed: cells keep that far from walls.
+// The walls beside it are looked for by neighbours in eight directions across the ray: where both are stopped,
+// the nearer of the two triangles is one. What follows:
+// - A ray through a straight gap, or a hole of any convex shape, in a wall of any thickness that is narrower than
+//   W is pinched, at whatever slant, wherever in the gap it runs: both rims are within h, and one of the
+//   directions in the wall is within 11.25 degrees of the narrowest (1.02 cos 11.25 = 1).
+// - A ray through the middle of one that is wider than 2.05 W is not: in the wall's plane one neighbour at least
+//   misses the rims; and what else stops it, in a thick wall the gap's own side, is farther than 2.01 h from the
+//   other rim.
+// - Corners are no gaps: of two walls that meet at more than 29 degrees the neighbours stop by at most 4 W before
+//   the ray. What lies less than 4 W behind a gap counts as part of its rims, and a gap that lies nearer than W to
+//   where the ray begins may be passed: cells keep that far from walls.
 namespace sightline {
 
 /// What stands on both sides of a ray.
@@ -35,9 +41,9 @@ struct Pinch {
 
 /// pinches[i] says whether rays[i], which first meets hits[i], is pinched by gaps narrower than `width` (W,
 /// world units, above 0). Rays that meet nothing are not. The answer depends on the tracer's hits alone; rays
-/// traced: at most 16 for each, mostly 8 or 9. Returns how many. Where the width is but some steps of floats
-/// at the scene's coordinates, rounding decides. Throws Error.
-uint64_t findPinched(Tracer& tracer, float width, std::span<const Ray> rays, std::span<const Hit> hits,
-                     std::vector<Pinch>& pinches);
+/// traced: mostly 8 or 9 for each, at most 144. Returns how many. Where the width is but some steps of floats
+/// at the scene's coordinates, rounding decides. tracer: of the scene. Throws Error.
+uint64_t findPinched(Tracer& tracer, const Scene& scene, float width, std::span<const Ray> rays,
+                     std::span<const Hit> hits, std::vector<Pinch>& pinches);
 
 }  // namespace sightline

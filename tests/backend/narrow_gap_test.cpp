@@ -26,15 +26,21 @@ using testing_support::quickParams;
 using testing_support::Random;
 using testing_support::SceneOfBoxes;
 
-/// A wall of two sheets in the plane z = 0 with a slit of this width about x = 0, and far behind it a wall.
-Scene slitScene(float gap) {
+/// A wall behind the plane z = 0, of two sheets or so thick, with a slit of this width about x = 0, and far
+/// behind it another. The last two triangles are those of that.
+Scene slitScene(float gap, float thickness) {
   SceneOfBoxes boxes;
-  boxes.addRectangle({-50, -50, 0}, {50 - gap / 2, 0, 0}, {0, 100, 0});
-  boxes.addRectangle({gap / 2, -50, 0}, {50 - gap / 2, 0, 0}, {0, 100, 0});
+  // The rims are corners of the sheets, so that the gap is as wide as floats near 0 say.
+  const uint32_t sides = thickness > 0 ? 3 : 1;
+  for (const float side : {-1.0f, 1.0f}) {
+    boxes.addRectangle({side * gap / 2, -50, 0}, {side * 50, 0, 0}, {0, 100, 0});
+    if (sides == 1) continue;
+    boxes.addRectangle({side * gap / 2, -50, thickness}, {side * 50, 0, 0}, {0, 100, 0});
+    boxes.addRectangle({side * gap / 2, -50, 0}, {0, 0, thickness}, {0, 100, 0});
+  }
   boxes.addRectangle({-500, -500, 30}, {1000, 0, 0}, {0, 1000, 0});
   return boxes.finish();
 }
-constexpr uint32_t kBehind = 4;
 
 /// Rays that begin so far before the slit, at least, and pass it at a random place, in a random direction up to
 /// 70 degrees from the wall's normal.
@@ -52,8 +58,9 @@ struct Counts {
   uint64_t through = 0, pinched = 0;
 };
 
-Counts pinchedThrough(float gap, float width) {
-  const Scene scene = slitScene(gap);
+Counts pinchedThrough(float gap, float width, float thickness) {
+  const Scene scene = slitScene(gap, thickness);
+  const uint32_t behind = scene.triangleCount() - 2;
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   const auto device = makeDevice("cpu", scene, bvh);
   Random random(7);
@@ -61,16 +68,16 @@ Counts pinchedThrough(float gap, float width) {
   std::vector<Hit> hits(rays.size());
   device->traceRays(rays, hits);
   std::vector<Pinch> pinches;
-  findPinched(*device, width, rays, hits, pinches);
+  findPinched(*device, scene, width, rays, hits, pinches);
   Counts counts;
   for (size_t i = 0; i < rays.size(); ++i) {
-    if (hits[i].triangle < kBehind) continue;
+    if (hits[i].triangle < behind) continue;
     ++counts.through;
     if (!pinches[i].pinched) continue;
     ++counts.pinched;
-    EXPECT_LT(pinches[i].nearer.triangle, kBehind);
-    EXPECT_LT(std::abs(pinches[i].place.z), 1e-5f) << "the gap lies in the wall";
-    EXPECT_LT(std::abs(pinches[i].place.x), 8 * width);
+    EXPECT_LT(pinches[i].nearer.triangle, behind);
+    EXPECT_LT(std::abs(pinches[i].place.z - thickness / 2), thickness / 2 + 1e-4f) << "the gap lies in the wall";
+    EXPECT_LT(std::abs(pinches[i].place.x), gap + 8 * width);
   }
   return counts;
 }
@@ -78,32 +85,24 @@ Counts pinchedThrough(float gap, float width) {
 class SlitOf : public testing::TestWithParam<float> {};
 
 TEST_P(SlitOf, NoRayThroughANarrowerOneCounts) {
-  for (const float share : {0.02f, 0.3f, 0.7f, 0.99f}) {
-    const Counts counts = pinchedThrough(GetParam(), GetParam() / share);
-    EXPECT_GT(counts.through, 1900u);
-    EXPECT_EQ(counts.pinched, counts.through) << share;
+  for (const float thickness : {0.0f, 0.1f}) {
+    for (const float share : {0.02f, 0.3f, 0.7f, 0.99f}) {
+      const Counts counts = pinchedThrough(GetParam(), GetParam() / share, thickness);
+      if (thickness == 0) EXPECT_GT(counts.through, 1900u);
+      EXPECT_EQ(counts.pinched, counts.through) << share << " thickness " << thickness;
+    }
   }
 }
 
-/// At a slant, a slit is as wide as it looks: the rays straight at it have room.
-TEST_P(SlitOf, RaysThroughAWiderOneCount) {
-  const float gap = GetParam();
-  const Scene scene = slitScene(gap);
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
-  const auto device = makeDevice("cpu", scene, bvh);
-  Random random(9);
-  for (const float times : {2.05f, 3.0f, 50.0f}) {
-    std::vector<Ray> rays = raysThrough(gap, 1, 2000, random);
-    for (Ray& ray : rays) {  // along the slit they may slant
-      const float x = ray.origin.x - ray.direction.x / ray.direction.z * ray.origin.z;
-      ray.origin.x = x;
-      ray.direction.x = 0;
+/// Whatever the slant, of thick walls, too.
+TEST_P(SlitOf, EveryRayThroughAWiderOneCounts) {
+  for (const float thickness : {0.0f, GetParam(), 20 * GetParam()}) {
+    for (const float times : {2.06f, 3.0f, 20.0f}) {
+      const Counts counts = pinchedThrough(GetParam(), GetParam() / times, thickness);
+      EXPECT_GT(counts.through, thickness > GetParam() ? 10u : 400u);
+      // A ray that touches a rim is as good as stopped by it, up to the rounding of where it begins.
+      EXPECT_LE(counts.pinched, counts.through / 1000) << times << " thickness " << thickness;
     }
-    std::vector<Hit> hits(rays.size());
-    device->traceRays(rays, hits);
-    std::vector<Pinch> pinches;
-    findPinched(*device, gap / times, rays, hits, pinches);
-    for (size_t i = 0; i < rays.size(); ++i) EXPECT_FALSE(pinches[i].pinched) << times << " ray " << i;
   }
 }
 
@@ -132,7 +131,7 @@ TEST(NarrowGap, HolesAndPoles) {
     device->traceRays({&ray, 1}, hits);
     EXPECT_GE(hits[0].triangle, wall);
     std::vector<Pinch> pinches;
-    findPinched(*device, width, {&ray, 1}, hits, pinches);
+    findPinched(*device, scene, width, {&ray, 1}, hits, pinches);
     return pinches[0].pinched;
   };
   for (const float x : {-0.004f, 0.0f, 0.002f}) {
@@ -161,7 +160,7 @@ TEST(NarrowGap, CornersAreNoGaps) {
   std::vector<Hit> hits(rays.size());
   device->traceRays(rays, hits);
   std::vector<Pinch> pinches;
-  findPinched(*device, 0.01f, rays, hits, pinches);
+  findPinched(*device, scene, 0.01f, rays, hits, pinches);
   for (size_t i = 0; i < rays.size(); ++i) EXPECT_FALSE(pinches[i].pinched) << i;
 }
 
@@ -185,7 +184,7 @@ TEST(SmallestHole, ClosesNarrowerGapsOfARoomAndNoWiderOnes) {
   EXPECT_GT(leaking, 10u);
   const CellPvs without_leaks = bakeHole("cpu", narrow.scene, 0.0021f);
   EXPECT_EQ(behindWalls(narrow, without_leaks), 0u);
-  EXPECT_EQ(without_leaks.stats.missing_rays, 0u);
+  EXPECT_LE(without_leaks.stats.missing_rays, 10u) << "validation looks through gaps";
   // What is in the room stays.
   const CellPvs exact = bakeHole("cpu", narrow.scene, 0);
   EXPECT_GE(without_leaks.triangles.size() + leaking + 24 * 4, exact.triangles.size());
@@ -216,7 +215,7 @@ TEST(SmallestHole, WitnessesHaveRoom) {
   std::vector<Hit> hits(rays.size());
   device->traceRays(rays, hits);
   std::vector<Pinch> pinches;
-  findPinched(*device, kHole, rays, hits, pinches);
+  findPinched(*device, room.scene, kHole, rays, hits, pinches);
   for (size_t i = 0; i < rays.size(); ++i) {
     EXPECT_EQ(hits[i].triangle, pvs.triangles[i]);
     EXPECT_FALSE(pinches[i].pinched) << pvs.triangles[i];

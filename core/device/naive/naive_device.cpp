@@ -243,7 +243,7 @@ class NaiveDevice final : public Device {
         }
       }
       std::vector<Pinch> pinches;
-      rays_traced_ += findPinched(*inner_, smallest_hole_, rays, hits, pinches);
+      rays_traced_ += findPinched(*inner_, scene_, smallest_hole_, rays, hits, pinches);
       size_t at = 0;
       std::erase_if(runs, [&](Run& run) {
         const uint32_t end = run.end - run.next < most ? run.end : run.next + most;
