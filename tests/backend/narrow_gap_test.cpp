@@ -101,7 +101,7 @@ TEST_P(SlitOf, EveryRayThroughAWiderOneCounts) {
       const Counts counts = pinchedThrough(GetParam(), GetParam() / times, thickness);
       EXPECT_GT(counts.through, thickness > GetParam() ? 10u : 400u);
       // A ray that touches a rim is as good as stopped by it, up to the rounding of where it begins.
-      EXPECT_LE(counts.pinched, counts.through / 1000) << times << " thickness " << thickness;
+      EXPECT_LE(counts.pinched, 1 + counts.through / 1000) << times << " thickness " << thickness;
     }
   }
 }
@@ -187,7 +187,7 @@ TEST(SmallestHole, ClosesNarrowerGapsOfARoomAndNoWiderOnes) {
   EXPECT_LE(without_leaks.stats.missing_rays, 10u) << "validation looks through gaps";
   // What is in the room stays.
   const CellPvs exact = bakeHole("cpu", narrow.scene, 0);
-  EXPECT_GE(without_leaks.triangles.size() + leaking + 24 * 4, exact.triangles.size());
+  EXPECT_GE(without_leaks.triangles.size() + leaking, exact.triangles.size());
   // Gaps of 50 mm are open for holes of half their width.
   const CellPvs open = bakeHole("cpu", wide.scene, 0), same = bakeHole("cpu", wide.scene, 0.0125f);
   EXPECT_GT(behindWalls(wide, open), 20u);
@@ -231,11 +231,10 @@ TEST(Leaks, AreTheTrianglesBehindGaps) {
   ASSERT_GT(behind, 3u);
   const Leaks leaks = findLeaks(*device, room.scene, pvs, leakWidth(pvs.cell));
   EXPECT_FLOAT_EQ(leaks.width, 0.0005f);
-  // Besides, the panels' sides in the gaps may count, which lie behind them, too.
   EXPECT_GE(leaks.triangles, behind);
-  EXPECT_LE(leaks.triangles, behind + 24 * 4);
+  EXPECT_LE(leaks.triangles, behind + 4) << "floor and ceiling reach past the walls, too";
   const glm::dvec3 at = glm::abs(leaks.place);
-  EXPECT_NEAR(std::max(at.x, at.z), 3, 0.11) << "in a wall";
+  EXPECT_NEAR(std::max(at.x, at.z), 3, 0.001) << "in a wall";
   const Leaks again = findLeaks(*device, room.scene, pvs, leakWidth(pvs.cell));
   EXPECT_EQ(again.triangles, leaks.triangles);
   EXPECT_EQ(again.rays, leaks.rays);

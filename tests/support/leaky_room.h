@@ -3,7 +3,7 @@
 
 namespace sightline::testing_support {
 
-/// A room of 6 x 3 x 6 metres of panels, 1 m wide and 10 cm thick, with gaps between them; a floor and a
+/// A room of 6 x 3 x 6 metres of thin panels, 1 m wide, with gaps between them; a floor and a
 /// ceiling that reach past the walls; some furniture; and all around, 5 m behind the walls, a mosaic. In metres,
 /// the room's centre over the origin, its floor at y = 0.
 struct LeakyRoom {
@@ -11,7 +11,7 @@ struct LeakyRoom {
   uint32_t mosaic = 0;  ///< first of the mosaic's triangles: all behind are
 
   /// gap: between two panels; mosaic_steps: squares along a side of the mosaic's walls.
-  explicit LeakyRoom(float gap, int mosaic_steps = 48) {
+  explicit LeakyRoom(float gap, int mosaic_steps = 64) {
     SceneOfBoxes boxes;
     boxes.addBox({-20, -0.2f, -20}, {20, 0, 20});
     boxes.addBox({-20, 3, -20}, {20, 3.2f, 20});
@@ -45,12 +45,10 @@ struct LeakyRoom {
   }
 
   static void addPanel(SceneOfBoxes& boxes, int side, int panel, float gap) {
-    // The first begins in the corner, where it meets the last of the wall beside it.
+    // The first begins in the corner, where the last of the wall beside it ends.
     const float from = float(panel) - 3 + (panel == 0 ? 0 : gap / 2);
     const float to = float(panel) - 2 - (panel == 5 ? 0 : gap / 2);
-    const vec3 a = turned(vec3(from, 0, 3), side);
-    const vec3 b = turned(vec3(panel == 5 ? to + 0.1f : to, 3, 3.1f), side);
-    boxes.addBox(glm::min(a, b), glm::max(a, b));
+    boxes.addRectangle(turned(vec3(from, 0, 3), side), turned(vec3(to - from, 0, 0), side), {0, 3, 0});
   }
 };
 
