@@ -21,8 +21,8 @@ struct BakeContent {
       : witnesses(to_keep), doors(std::move(that_open)) {}
 
   Witnesses witnesses;
-  /// Objects that open (findObjects in core/scene/find_objects.h): each cell gets a second set, of what it sees
-  /// besides when they are away, and is baked twice. Needs the memory of two sessions.
+  /// Objects that open (findObjects in core/scene/find_objects.h): each cell gets a second set, of what it
+  /// sees besides when they are away, and is baked twice. Needs the memory of two sessions.
   std::vector<NamedTriangles> doors;
 };
 

@@ -17,8 +17,8 @@ struct SessionParts {
 
   /// Builds it at the first call.
   const Bvh& tree();
-  /// The device that bakes by this method; opens it at the first call. The naive method has one of its own, and
-  /// so has a smallest hole.
+  /// The device that bakes by this method; opens it at the first call. The naive method has one of its own,
+  /// and so has a smallest hole.
   Device& device(Method method = Method::kGvspp, float smallest_hole = 0);
   /// A device that is open already, else device(): for rays that any may trace.
   Tracer& tracer();

@@ -142,7 +142,8 @@ std::vector<std::string> sceneWarnings(const SceneSummary& scene) {
 std::string leaksText(const Leaks& leaks) {
   if (leaks.triangles == 0) return {};
   return fmt::format(
-      "{} of the set {} seen only through gaps narrower than {:.3g}, triangle {} through one at ({:.6g}, {:.6g}, "
+      "{} of the set {} seen only through gaps narrower than {:.3g}, triangle {} through one at ({:.6g}, "
+      "{:.6g}, "
       "{:.6g}); --smallest-hole {:.3g} closes them",
       counted(leaks.triangles, "triangle"), leaks.triangles == 1 ? "is" : "are", leaks.width,
       leaks.first_triangle, leaks.place.x, leaks.place.y, leaks.place.z, leaks.width);

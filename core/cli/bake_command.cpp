@@ -59,8 +59,8 @@ void sayDoors(const std::vector<NamedTriangles>& doors) {
   if (doors.empty()) return;
   uint64_t triangles = 0;
   for (const NamedTriangles& door : doors) triangles += door.count;
-  say(fmt::format("doors: {} of {}, each cell is baked with them closed and open", counted(doors.size(), "object"),
-                  counted(triangles, "triangle")));
+  say(fmt::format("doors: {} of {}, each cell is baked with them closed and open",
+                  counted(doors.size(), "object"), counted(triangles, "triangle")));
 }
 
 SessionOptions sessionOptions(const BakeOptions& options) {
@@ -121,7 +121,8 @@ void warnOfCells(const BakeOptions& options, Session& session, const Bake& bake,
 }
 
 /// Bakes what is missing, with progress, and keeps how the sets grew for the page. Returns the exit code.
-int bakeCells(Session& session, Bake& bake, BakePage& page, BakeReport& report, CellWarningPrinter& warnings) {
+int bakeCells(Session& session, Bake& bake, BakePage& page, BakeReport& report,
+              CellWarningPrinter& warnings) {
   if (!bake.partProblem().empty()) {
     say(fmt::format("{}: cut off or damaged after {} ({}); the rest is baked again", bake.partFile().string(),
                     counted(bake.resumed(), "whole cell"), bake.partProblem()));

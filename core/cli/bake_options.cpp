@@ -148,9 +148,10 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
       ->check(notStandardOutput("a folder of pictures"))
       ->type_name("DIR");
   command
-      .add_option("--doors", options.doors,
-                  "objects that open, by name (* any letters, ? one; repeated): each cell also gets what it sees "
-                  "besides when they are open (docs/doors-and-gaps.md)")
+      .add_option(
+          "--doors", options.doors,
+          "objects that open, by name (* any letters, ? one; repeated): each cell also gets what it sees "
+          "besides when they are open (docs/doors-and-gaps.md)")
       ->allow_extra_args(false)
       ->type_name("PATTERN");
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");

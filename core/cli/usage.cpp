@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "core/cli/command_line.h"
 #include "core/base/nearest.h"
+#include "core/cli/command_line.h"
 
 namespace sightline {
 namespace {

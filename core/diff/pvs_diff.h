@@ -29,7 +29,10 @@ struct CellDiff {
   SomeIds witnesses;                        ///< triangles of both whose rays differ in a bit
   std::vector<ValueDifference> statistics;  ///< counts; those that cost only (seconds, bytes) are left out
 
-  bool same() const { return only[0].count + only[1].count + only_open[0].count + only_open[1].count + witnesses.count == 0 && statistics.empty(); }
+  bool same() const {
+    return only[0].count + only[1].count + only_open[0].count + only_open[1].count + witnesses.count == 0 &&
+           statistics.empty();
+  }
 };
 
 /// Where two bakes differ. What may differ between two runs of the same bake is not compared: times, memory,

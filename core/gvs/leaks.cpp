@@ -28,7 +28,8 @@ struct Suspect {
 /// Numbers 0 .. 1 that depend on triangle and try alone.
 class TryRandom {
  public:
-  TryRandom(uint32_t triangle, uint32_t attempt) : state_(mixBits(uint64_t(triangle) << 32 | (attempt + 1))) {}
+  TryRandom(uint32_t triangle, uint32_t attempt)
+      : state_(mixBits(uint64_t(triangle) << 32 | (attempt + 1))) {}
   double unit() { return double(mixBits(state_ += kSplitmixStep) >> 11) * 0x1p-53; }
 
  private:

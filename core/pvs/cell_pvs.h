@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "core/pvs/cell_stats.h"
 #include "core/cell/view_cell.h"
+#include "core/pvs/cell_stats.h"
 #include "core/shared/types.h"
 
 namespace sightline {

@@ -14,9 +14,9 @@ namespace sightline {
 struct CellSummary {
   ViewCell cell;
   CellStats stats;
-  uint32_t pvs_size = 0;  ///< triangles in the set
-  uint64_t set_hash = 0;  ///< XXH3 of the ids
-  std::string device;     ///< that baked it
+  uint32_t pvs_size = 0;                     ///< triangles in the set
+  uint64_t set_hash = 0;                     ///< XXH3 of the ids
+  std::string device;                        ///< that baked it
   std::optional<CellStats> open_stats = {};  ///< of a bake with doors
   uint32_t open_added = 0;                   ///< triangles that their opening adds
   uint64_t open_hash = 0;                    ///< XXH3 of their ids

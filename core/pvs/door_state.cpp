@@ -42,9 +42,10 @@ CellPvs inState(const CellPvs& cell, DoorState state) {
 
 PvsFile inState(const PvsFile& pvs, DoorState state, const std::filesystem::path& file) {
   if (state == DoorState::kOpen && pvs.doors.empty()) {
-    throw Error(fmt::format("{}: was baked without doors, so there is nothing that opens; bake it with --doors",
-                            file.string()),
-                kExitUsage);
+    throw Error(
+        fmt::format("{}: was baked without doors, so there is nothing that opens; bake it with --doors",
+                    file.string()),
+        kExitUsage);
   }
   PvsFile result = pvs;
   result.doors.clear();

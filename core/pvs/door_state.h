@@ -15,8 +15,8 @@ std::optional<DoorState> doorStateOf(const std::string& name);
 /// The cell with the set that it has in this state, and its witnesses; without an open set of its own. The
 /// statistics stay those of the closed doors.
 CellPvs inState(const CellPvs& cell, DoorState state);
-/// All cells so, and no doors. Throws Error (wrong usage) for kOpen where the bake has no doors; file: for the
-/// message.
+/// All cells so, and no doors. Throws Error (wrong usage) for kOpen where the bake has no doors; file: for
+/// the message.
 PvsFile inState(const PvsFile& pvs, DoorState state, const std::filesystem::path& file);
 
 }  // namespace sightline

@@ -35,9 +35,9 @@ enum class ParamGroup {
   kHoles
 };
 inline constexpr ParamGroup kParamGroups[] = {
-    ParamGroup::kMethod,    ParamGroup::kSeed,     ParamGroup::kSamples, ParamGroup::kThinning,
-    ParamGroup::kDistances, ParamGroup::kStopRule, ParamGroup::kBatch,   ParamGroup::kValidation,
-    ParamGroup::kHoles};
+    ParamGroup::kMethod,   ParamGroup::kSeed,       ParamGroup::kSamples,
+    ParamGroup::kThinning, ParamGroup::kDistances,  ParamGroup::kStopRule,
+    ParamGroup::kBatch,    ParamGroup::kValidation, ParamGroup::kHoles};
 /// "method", "seed", "samples", ...
 std::string paramGroupName(ParamGroup group);
 
@@ -141,8 +141,8 @@ inline constexpr Param kParams[] = {
      kMethodsThatSample, ParamGroup::kThinning, "order",
      "yield: the kind of ray that finds most goes first; queue: reverse rays of a batch follow its "
      "border rays, as in the thesis"},
-    {ParamField<float>{&BakeParams::smallest_hole, 0, param_table::kMostFloat}, "smallest_hole", "world units",
-     "none", 5, kMethodsByRays, ParamGroup::kHoles, "smallest hole",
+    {ParamField<float>{&BakeParams::smallest_hole, 0, param_table::kMostFloat}, "smallest_hole",
+     "world units", "none", 5, kMethodsByRays, ParamGroup::kHoles, "smallest hole",
      "gaps narrower than this count as closed, those wider than twice as much as open (0: every gap is "
      "open; docs/doors-and-gaps.md)"},
 };

@@ -76,7 +76,8 @@ void PvsWriter::goOn(const PartialPvs& left) {
   setHead(left.pvs);
   places_ = left.places;
   costs_ = {};
-  for (uint32_t index = 0; index < cells(); ++index) writeCost(costs_, costOf(left.pvs.cells[index], index), head_);
+  for (uint32_t index = 0; index < cells(); ++index)
+    writeCost(costs_, costOf(left.pvs.cells[index], index), head_);
 }
 
 void PvsWriter::setHead(const PvsFile& head) {

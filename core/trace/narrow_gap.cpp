@@ -9,27 +9,15 @@ namespace sightline {
 namespace {
 
 /// cos and sin of k * 22.5 degrees: half a circle of directions.
-constexpr double kCos[] = {1,
-                           0.92387953251128674,
-                           0.70710678118654752,
-                           0.38268343236508977,
-                           0,
-                           -0.38268343236508977,
-                           -0.70710678118654752,
-                           -0.92387953251128674};
-constexpr double kSin[] = {0,
-                           0.38268343236508977,
-                           0.70710678118654752,
-                           0.92387953251128674,
-                           1,
-                           0.92387953251128674,
-                           0.70710678118654752,
-                           0.38268343236508977};
+constexpr double kCos[] = {1, 0.92387953251128674,  0.70710678118654752,  0.38268343236508977,
+                           0, -0.38268343236508977, -0.70710678118654752, -0.92387953251128674};
+constexpr double kSin[] = {0, 0.38268343236508977, 0.70710678118654752, 0.92387953251128674,
+                           1, 0.92387953251128674, 0.70710678118654752, 0.38268343236508977};
 constexpr size_t kDirections = std::size(kCos);
 constexpr double kReach = 1.0195911582083184;  ///< 1 / cos 11.25 degrees
 constexpr double kDepth = 4;
 constexpr double kRounded = 1 - 0x1p-20;  ///< of a distance: what is nearer is so not by rounding alone
-constexpr double kAcross = 2.01;  ///< of the reach: twice it, and room for rounding
+constexpr double kAcross = 2.01;          ///< of the reach: twice it, and room for rounding
 
 /// A ray and two vectors of length 1 that span the plane in which its neighbours are looked for.
 struct Look {

@@ -12,23 +12,28 @@
 // "what is seen through holes wider than that".
 //
 //            #  wall
-//         h  # p      A neighbour of a ray is one beside it, in the same direction, at the distance h = 1.02 W.
+//         h  # p      A neighbour of a ray is one beside it, in the same direction, at the distance h = 1.02
+//         W.
 //   ------------->    It is stopped where it hits something by more than 4 W before the ray does. A ray is
-//         h  # q      pinched if, for one of eight directions, 22.5 degrees apart, in the plane of a wall beside
+//         h  # q      pinched if, for one of eight directions, 22.5 degrees apart, in the plane of a wall
+//         beside
 //            #        it, the neighbours on both sides are stopped, at p and at q, and p is no farther than
 //                     2.01 h from the triangle that q lies on, or q from that of p.
 //
-// The walls beside it are looked for by neighbours in eight directions across the ray: where both are stopped,
-// the nearer of the two triangles is one. What follows:
-// - A ray through a straight gap, or a hole of any convex shape, in a wall of any thickness that is narrower than
+// The walls beside it are looked for by neighbours in eight directions across the ray: where both are
+// stopped, the nearer of the two triangles is one. What follows:
+// - A ray through a straight gap, or a hole of any convex shape, in a wall of any thickness that is narrower
+// than
 //   W is pinched, at whatever slant, wherever in the gap it runs: both rims are within h, and one of the
 //   directions in the wall is within 11.25 degrees of the narrowest (1.02 cos 11.25 = 1).
-// - A ray through the middle of one that is wider than 2.05 W is not: in the wall's plane one neighbour at least
-//   misses the rims; and what else stops it, in a thick wall the gap's own side, is farther than 2.01 h from the
-//   other rim.
-// - Corners are no gaps: of two walls that meet at more than 29 degrees the neighbours stop by at most 4 W before
-//   the ray. What lies less than 4 W behind a gap counts as part of its rims, and a gap that lies nearer than W to
-//   where the ray begins may be passed: cells keep that far from walls.
+// - A ray through the middle of one that is wider than 2.05 W is not: in the wall's plane one neighbour at
+// least
+//   misses the rims; and what else stops it, in a thick wall the gap's own side, is farther than 2.01 h from
+//   the other rim.
+// - Corners are no gaps: of two walls that meet at more than 29 degrees the neighbours stop by at most 4 W
+// before
+//   the ray. What lies less than 4 W behind a gap counts as part of its rims, and a gap that lies nearer than
+//   W to where the ray begins may be passed: cells keep that far from walls.
 namespace sightline {
 
 /// What stands on both sides of a ray.

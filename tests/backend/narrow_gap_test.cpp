@@ -42,14 +42,15 @@ Scene slitScene(float gap, float thickness) {
   return boxes.finish();
 }
 
-/// Rays that begin so far before the slit, at least, and pass it at a random place, in a random direction up to
-/// 70 degrees from the wall's normal.
+/// Rays that begin so far before the slit, at least, and pass it at a random place, in a random direction up
+/// to 70 degrees from the wall's normal.
 std::vector<Ray> raysThrough(float gap, float before, size_t count, Random& random) {
   std::vector<Ray> rays;
   while (rays.size() < count) {
     const vec3 through((random.unit() - 0.5f) * gap * 0.999f, random.unit() * 4 - 2, 0);
     const vec3 direction = vec3(random.unit() * 4 - 2, random.unit() * 4 - 2, 1) * (0.5f + random.unit());
-    rays.push_back({vec4(through - direction * (before / direction.z * (1 + random.unit())), 0), vec4(direction, 0)});
+    rays.push_back(
+        {vec4(through - direction * (before / direction.z * (1 + random.unit())), 0), vec4(direction, 0)});
   }
   return rays;
 }
@@ -76,7 +77,8 @@ Counts pinchedThrough(float gap, float width, float thickness) {
     if (!pinches[i].pinched) continue;
     ++counts.pinched;
     EXPECT_LT(pinches[i].nearer.triangle, behind);
-    EXPECT_LT(std::abs(pinches[i].place.z - thickness / 2), thickness / 2 + 1e-4f) << "the gap lies in the wall";
+    EXPECT_LT(std::abs(pinches[i].place.z - thickness / 2), thickness / 2 + 1e-4f)
+        << "the gap lies in the wall";
     EXPECT_LT(std::abs(pinches[i].place.x), gap + 8 * width);
   }
   return counts;
@@ -154,7 +156,8 @@ TEST(NarrowGap, CornersAreNoGaps) {
   std::vector<Ray> rays;
   for (int i = 0; i < 2000; ++i) {
     const vec3 from(random.unit() * 8 - 4, 0.5f + random.unit() * 3, random.unit() * 8 - 4);
-    const vec3 to(5 - 0.02f * random.unit() * random.unit(), 0.02f * random.unit(), 5 - 0.02f * random.unit());
+    const vec3 to(5 - 0.02f * random.unit() * random.unit(), 0.02f * random.unit(),
+                  5 - 0.02f * random.unit());
     rays.push_back({vec4(from, 0), vec4(to - from, 0)});
   }
   std::vector<Hit> hits(rays.size());

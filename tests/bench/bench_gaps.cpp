@@ -1,5 +1,5 @@
-// What hairline gaps of a room cost, and what --smallest-hole makes of them: sets, times and leaks by the width
-// of the gaps, with the same bake repeated.
+// What hairline gaps of a room cost, and what --smallest-hole makes of them: sets, times and leaks by the
+// width of the gaps, with the same bake repeated.
 #include <fmt/core.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// Sets with doors against their definition, in both directions: closed, the set of the whole scene; open, what
-// is seen where the doors are away besides.
+// Sets with doors against their definition, in both directions: closed, the set of the whole scene; open,
+// what is seen where the doors are away besides.
 #include <gtest/gtest.h>
 
 #include "core/api/bake.h"
@@ -83,7 +83,8 @@ TEST(Doors, ClosedAndOpenSetsAreRight) {
   EXPECT_GT(added, 10u) << "doors that hide nothing test nothing";
 }
 
-/// The open bake is that of the scene without its doors, by the same seed; the closed one that without --doors.
+/// The open bake is that of the scene without its doors, by the same seed; the closed one that without
+/// --doors.
 TEST(Doors, AreTwoBakesInOne) {
   Random random(5);
   const Scene scene = sceneWithDoors(random);
@@ -111,7 +112,8 @@ TEST(Doors, ARoomBehindADoor) {
   const ViewCell cell{"cell", {0, 0, 0}, {1, 1, 0}, {}};
   Session session(scene, {.device = "cpu"});
   const std::vector<std::string> patterns = {"hall"};
-  const PvsFile pvs = bake(session, {&cell, 1}, quick(), {}, {Witnesses::kDrop, findObjects(scene, patterns, "d")});
+  const PvsFile pvs =
+      bake(session, {&cell, 1}, quick(), {}, {Witnesses::kDrop, findObjects(scene, patterns, "d")});
   EXPECT_EQ(pvs.cells[0].triangles, (std::vector<uint32_t>{0, 1}));
   EXPECT_EQ(pvs.cells[0].open->triangles, (std::vector<uint32_t>{2, 3}));
   const auto open = visibleFrom(pvs, {0, 0, 0}, DoorState::kOpen);

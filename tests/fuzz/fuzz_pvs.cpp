@@ -48,7 +48,8 @@ void requireInvariants(const PvsFile& pvs) {
       require(std::adjacent_find(added.begin(), added.end(), std::greater_equal<>()) == added.end(),
               "added ids that do not ascend");
       require(added.empty() || added.back() < pvs.triangle_count, "an added id out of range");
-      require(cell.open->witnesses.size() == (pvs.has_witnesses ? added.size() : 0), "open witnesses missing");
+      require(cell.open->witnesses.size() == (pvs.has_witnesses ? added.size() : 0),
+              "open witnesses missing");
     }
     for (const CellCost& cost : {costOf(cell, 0)}) {
       for (const double seconds :

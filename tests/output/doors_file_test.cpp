@@ -94,7 +94,8 @@ TEST(DoorsFile, WhatOpensIsNotInTheClosedSet) {
 
 TEST(DoorsFile, StatesAreWhatTheySay) {
   const PvsFile pvs = doorsPvs();
-  const CellPvs open = inState(pvs.cells[0], DoorState::kOpen), closed = inState(pvs.cells[0], DoorState::kClosed);
+  const CellPvs open = inState(pvs.cells[0], DoorState::kOpen),
+                closed = inState(pvs.cells[0], DoorState::kClosed);
   EXPECT_EQ(closed.triangles, pvs.cells[0].triangles);
   EXPECT_EQ(open.triangles, (std::vector<uint32_t>{0, 1, 2, 3, 4, 7, 299, 300, 301, 998, 999}));
   ASSERT_EQ(open.witnesses.size(), open.triangles.size());
@@ -147,13 +148,12 @@ TEST(DoorsFile, DiffsSeeWhatOpeningAdds) {
   const PvsFile a = doorsPvs();
   PvsFile b = a;
   EXPECT_TRUE(diffPvs(a, b).same());
-  b.cells[0].open->triangles[0] = 5;
+  b.cells[0].open->triangles[3] = 302;
   const PvsDiff diff = diffPvs(a, b);
   EXPECT_FALSE(diff.same());
   ASSERT_EQ(diff.cells.size(), 1u);
-  EXPECT_EQ(diffLines(diff),
-            (std::vector<std::string>{"cell a: 1 triangle (3) with open doors in A only",
-                                      "cell a: 1 triangle (5) with open doors in B only"}));
+  EXPECT_EQ(diffLines(diff), (std::vector<std::string>{"cell a: 1 triangle (301) with open doors in A only",
+                                                       "cell a: 1 triangle (302) with open doors in B only"}));
   b.doors.clear();
   EXPECT_EQ(diffPvs(a, b).inputs[0].name, "doors");
 }

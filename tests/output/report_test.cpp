@@ -115,9 +115,10 @@ TEST(CellTable, NamesTheVerdicts) {
 
 TEST(Report, TellsOfLeaks) {
   EXPECT_EQ(leaksText({}), "");
-  EXPECT_EQ(leaksText({0.005f, 7, 300, {1, 2.5, -3}, 1000, 0.25}),
-            "7 triangles of the set are seen only through gaps narrower than 0.005, triangle 300 through one at "
-            "(1, 2.5, -3); --smallest-hole 0.005 closes them");
+  EXPECT_EQ(
+      leaksText({0.005f, 7, 300, {1, 2.5, -3}, 1000, 0.25}),
+      "7 triangles of the set are seen only through gaps narrower than 0.005, triangle 300 through one at "
+      "(1, 2.5, -3); --smallest-hole 0.005 closes them");
   const json text = json::parse(reportJson(exampleReport()));
   EXPECT_EQ(text["cells"][0]["leaks"]["triangles"], 7);
   EXPECT_EQ(text["cells"][0]["open"]["added"], 3);

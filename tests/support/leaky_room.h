@@ -4,8 +4,8 @@
 namespace sightline::testing_support {
 
 /// A room of 6 x 3 x 6 metres of thin panels, 1 m wide, with gaps between them; a floor and a
-/// ceiling that reach past the walls; some furniture; and all around, 5 m behind the walls, a mosaic. In metres,
-/// the room's centre over the origin, its floor at y = 0.
+/// ceiling that reach past the walls; some furniture; and all around, 5 m behind the walls, a mosaic. In
+/// metres, the room's centre over the origin, its floor at y = 0.
 struct LeakyRoom {
   Scene scene;
   uint32_t mosaic = 0;  ///< first of the mosaic's triangles: all behind are

@@ -174,8 +174,8 @@ class NaiveDevice final : public Device {
   enum class EachCandidate { kTested, kUntilOneCounts };
 
   /// Traces the rays 0 .. count - 1 of generators that makeGenerator() returns, and hands those that have a
-  /// direction with their hits to take(ray, hit, counts), in order. counts: false for a ray that is pinched, of
-  /// which the hit is what stands nearer at its side.
+  /// direction with their hits to take(ray, hit, counts), in order. counts: false for a ray that is pinched,
+  /// of which the hit is what stands nearer at its side.
   void trace(uint64_t count, auto&& makeGenerator, auto&& take,
              EachCandidate candidates = EachCandidate::kUntilOneCounts) {
     for (uint64_t first = 0; first < count; first += kChunk) {

@@ -13,8 +13,8 @@ namespace sightline {
 /// outlives the device.
 ///
 /// smallest_hole: above 0, a ray that is pinched by gaps narrower than that (core/trace/narrow_gap.h) finds
-/// nothing, and as far as other rays follow from it, it ends at the gap. traceRays and traceViews stay as they
-/// are.
+/// nothing, and as far as other rays follow from it, it ends at the gap. traceRays and traceViews stay as
+/// they are.
 std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene,
                                         float smallest_hole = 0);
 
