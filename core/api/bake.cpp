@@ -10,7 +10,7 @@
 #include "core/device/registry/device_names.h"
 #include "core/gvs/algorithm_revision.h"
 #include "core/gvs/leaks.h"
-#include "core/scene/without_triangles.h"
+#include "core/scene/seen_through.h"
 
 namespace sightline {
 
@@ -29,6 +29,7 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
   inputs.params = params;
   inputs.has_witnesses = content.witnesses == Witnesses::kKeep;
   inputs.doors = content.doors;
+  inputs.see_through = session.options().see_through;
   inputs.planned.assign(cells.begin(), cells.end());
   inputs.version = versionOf(inputs);
   return inputs;
@@ -36,8 +37,8 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
 
 namespace {
 
-/// What the cell sees besides where the doors are away: what `device` finds, which holds the scene without
-/// them, and not `closed`.
+/// What the cell sees besides where the doors hide nothing: what `device` finds, for which they are glass,
+/// and not `closed`.
 OpenSet bakeOpen(Device& device, const Scene& scene, uint32_t index, const BakeParams& params,
                  const CellPvs& closed, const BakeHooks& hooks) {
   CellPvs pvs = bakeCell(device, scene, closed.cell, index, params, hooks);
@@ -58,7 +59,7 @@ CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& e
   Device& device = session.parts().device(inputs.params.method, hole);
   std::shared_ptr<Session> open;
   if (!inputs.doors.empty()) {
-    open = std::make_shared<Session>(withoutTriangles(session.scene(), inputs.doors), session.options());
+    open = std::make_shared<Session>(seenThrough(session.scene(), inputs.doors), session.options());
   }
   return [&, open, hole](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
     BakeTrace trace;
@@ -69,8 +70,8 @@ CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& e
       events.leaks(index, findLeaks(device, session.scene(), pvs, leakWidth(cell)));
     }
     if (open) {
-      Device& without_doors = open->parts().device(inputs.params.method, hole);
-      pvs.open = bakeOpen(without_doors, open->scene(), index, inputs.params, pvs, hooks);
+      Device& glass_doors = open->parts().device(inputs.params.method, hole);
+      pvs.open = bakeOpen(glass_doors, open->scene(), index, inputs.params, pvs, hooks);
     }
     if (events.grown) events.grown(index, std::move(trace));
     if (!inputs.has_witnesses) {

@@ -22,7 +22,7 @@ struct BakeContent {
 
   Witnesses witnesses;
   /// Objects that open (findObjects in core/scene/find_objects.h): each cell gets a second set, of what it
-  /// sees besides when they are away, and is baked twice. Needs the memory of two sessions.
+  /// sees besides when they hide nothing, and is baked twice. Needs the memory of two sessions.
   std::vector<NamedTriangles> doors;
 };
 

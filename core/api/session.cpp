@@ -1,17 +1,34 @@
 #include "core/api/session.h"
 
 #include "core/api/session_parts.h"
+#include "core/base/error.h"
 #include "core/device/naive/naive_device.h"
 #include "core/device/registry/make_device.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/scene_tree.h"
+#include "core/scene/seen_through.h"
 
 namespace sightline {
 
-SessionParts::SessionParts(Scene scene_to_own, SessionOptions options_to_keep)
-    : scene(std::move(scene_to_own)), options(std::move(options_to_keep)) {
+namespace {
+
+/// Checks the scene. Its hash, if that is not that of the session's own scene.
+std::optional<uint64_t> hashAhead(const Scene& scene, const SessionOptions& options) {
   checkScene(scene);
+  for (const NamedTriangles& object : options.see_through) {
+    if (uint64_t(object.first) + object.count <= scene.triangles.size()) continue;
+    throw Error("an object to see through is beyond the scene: " + object.name, kExitUsage);
+  }
+  if (options.see_through.empty()) return {};
+  return hashScene(scene);
 }
+
+}  // namespace
+
+SessionParts::SessionParts(Scene scene_to_own, SessionOptions options_to_keep)
+    : hash(hashAhead(scene_to_own, options_to_keep)),
+      scene(seenThrough(std::move(scene_to_own), options_to_keep.see_through)),
+      options(std::move(options_to_keep)) {}
 
 const Bvh& SessionParts::tree() {
   if (!bvh) {

@@ -24,9 +24,9 @@ struct SessionParts {
   Tracer& tracer();
   bool isOpen() const { return plain != nullptr || naive != nullptr; }
 
+  std::optional<uint64_t> hash;  ///< of the scene as it was given, once it was asked for
   const Scene scene;
   const SessionOptions options;
-  std::optional<uint64_t> hash;  ///< of the scene, once it was asked for
   std::optional<Bvh> bvh;
   std::unique_ptr<Device> plain, naive;
   float smallest_hole = 0;  ///< of `naive`

@@ -58,6 +58,15 @@ std::string namesText(const std::vector<NamedTriangles>& objects) {
   return names.empty() ? "none" : names;
 }
 
+void compareObjects(std::vector<std::string>& differences, const char* what,
+                    const std::vector<NamedTriangles>& earlier, const std::vector<NamedTriangles>& wanted) {
+  const std::string there = namesText(earlier), now = namesText(wanted);
+  compare(differences, what, there, now);
+  if (there == now && earlier != wanted) {
+    differences.push_back(fmt::format("{} (of the same names, but of other triangles)", what));
+  }
+}
+
 std::string intersectorText(const std::string& intersector) {
   return intersector.empty() ? "that of cpu and opencl" : "that of " + intersector;
 }
@@ -83,10 +92,8 @@ std::vector<std::string> inputDifferences(const PvsFile& earlier, const PvsFile&
     compare(differences, param.name, valueText(param, earlier.params), valueText(param, wanted.params));
   }
   compare(differences, "witnesses", earlier.has_witnesses, wanted.has_witnesses);
-  compare(differences, "doors", namesText(earlier.doors), namesText(wanted.doors));
-  if (earlier.doors != wanted.doors && namesText(earlier.doors) == namesText(wanted.doors)) {
-    differences.push_back("doors (of the same names, but of other triangles)");
-  }
+  compareObjects(differences, "doors", earlier.doors, wanted.doors);
+  compareObjects(differences, "objects that hide nothing", earlier.see_through, wanted.see_through);
   return differences;
 }
 

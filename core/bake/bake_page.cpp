@@ -211,7 +211,7 @@ void addDoors(HtmlReport& html, const BakeReport& report) {
   html.section("Doors");
   std::string names;
   for (const NamedTriangles& door : report.doors) names += (names.empty() ? "" : ", ") + door.name;
-  html.text(fmt::format("{}: {}. Closed, they are part of the sets above; open, as if they were away.",
+  html.text(fmt::format("{}: {}. Closed, they are part of the sets above; open, they hide nothing.",
                         counted(report.doors.size(), "object"), names));
   ReportTable table{.columns = {"cell", "closed", "open adds", "open", "rays", "seconds"}};
   for (const CellSummary& cell : report.cells) {

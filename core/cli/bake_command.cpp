@@ -44,6 +44,7 @@ BakeReport startReport(const BakeOptions& options, const Scene& scene, const Bak
   report.repair = options.repair;
   report.params = options.params;
   report.doors = bake.head().doors;
+  report.see_through = bake.head().see_through;
   report.planned_cells = bake.head().planned.size();
   report.resumed_cells = bake.resumed();
   for (const std::string& warning : sceneWarnings(report.scene)) say("warning: " + warning);
@@ -63,10 +64,11 @@ void sayDoors(const std::vector<NamedTriangles>& doors) {
                   counted(doors.size(), "object"), counted(triangles, "triangle")));
 }
 
-SessionOptions sessionOptions(const BakeOptions& options) {
+SessionOptions sessionOptions(const BakeOptions& options, const Scene& scene) {
   return {.device = options.device,
           .device_options = options.device_options,
           .spatial_splits = options.spatial_splits,
+          .see_through = findObjects(scene, options.see_through, "--see-through"),
           .scene_name = options.scene.filename().string()};
 }
 
@@ -255,7 +257,9 @@ void runBake(const BakeOptions& options) {
                   std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
   const TextOutputs outputs(reports);
-  Session session(loadScene(options.scene, {.repair = options.repair}), sessionOptions(options));
+  Scene loaded = loadScene(options.scene, {.repair = options.repair});
+  SessionOptions session_options = sessionOptions(options, loaded);
+  Session session(std::move(loaded), std::move(session_options));
   const Scene& scene = session.scene();
   const BakeContent content(options.witnesses ? Witnesses::kKeep : Witnesses::kDrop,
                             findObjects(scene, options.doors, "--doors"));

@@ -154,6 +154,11 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
           "besides when they are open (docs/doors-and-gaps.md)")
       ->allow_extra_args(false)
       ->type_name("PATTERN");
+  command
+      .add_option("--see-through", options.see_through,
+                  "objects that are seen but hide nothing, by name as above: the sets hold wherever they are")
+      ->allow_extra_args(false)
+      ->type_name("PATTERN");
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
   command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");
   command.add_flag("--overwrite", options.overwrite, "replace a bake with other inputs");

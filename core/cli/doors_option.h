@@ -4,7 +4,7 @@
 
 #include "core/cli/name_checks.h"
 #include "core/pvs/door_state.h"
-#include "core/scene/without_triangles.h"
+#include "core/scene/seen_through.h"
 
 namespace sightline {
 
@@ -19,9 +19,10 @@ inline void declareDoors(CLI::App& command, DoorState& state) {
       ->default_str(doorStateName(DoorState::kClosed));
 }
 
-/// The scene as it is in this state of the bake's doors.
+/// The scene as the bake saw it in this state of its doors.
 inline Scene inState(Scene scene, const PvsFile& pvs, DoorState state) {
-  return state == DoorState::kOpen ? withoutTriangles(std::move(scene), pvs.doors) : scene;
+  scene = seenThrough(std::move(scene), pvs.see_through);
+  return state == DoorState::kOpen ? seenThrough(std::move(scene), pvs.doors) : scene;
 }
 
 }  // namespace sightline

@@ -59,6 +59,11 @@ void showScene(const std::filesystem::path& file, bool repair) {
   if (scene.single_sided_triangles != 0) {
     row("single-sided", fmt::format("{} triangles", scene.single_sided_triangles));
   }
+  const SurfaceCounts surfaces = countSurfaces(scene.surfaces);
+  if (!scene.surfaces.empty()) {
+    row("surfaces", fmt::format("{} triangles with holes, {} seen through, {} not there from behind",
+                                surfaces.masked, surfaces.glass, surfaces.front_only));
+  }
   for (const std::string& warning : scene.warnings) row("warning", warning);
   row("hash", hashText(hashScene(scene)));
   row("objects", std::to_string(scene.objects.size()));
@@ -103,6 +108,10 @@ void showPvs(const std::filesystem::path& file) {
                                pvs.intersector.empty() ? "" : ", intersection test of " + pvs.intersector));
   showParams(pvs.params);
   row("witnesses", pvs.has_witnesses ? "yes" : "no");
+  for (const NamedTriangles& object : pvs.see_through) {
+    row("hides nothing",
+        fmt::format("{} (from triangle {}, {} of them)", object.name, object.first, object.count));
+  }
   for (const NamedTriangles& door : pvs.doors) {
     row("door", fmt::format("{} (from triangle {}, {} of them)", door.name, door.first, door.count));
   }

@@ -66,9 +66,11 @@ std::vector<PvsFile> loadSets(const MeasureCommand& command, const Scene& scene)
   for (const std::filesystem::path& file : command.pvs) {
     sets.push_back(loadFinishedCells(file));
     requireScene(sets.back(), scene, file);
-    if (sets.back().doors != sets.front().doors && command.doors == DoorState::kOpen) {
-      throw Error(fmt::format("{}: has other doors than {}; measure the files one by one", file.string(),
-                              command.pvs.front().string()));
+    const bool other_doors = sets.back().doors != sets.front().doors && command.doors == DoorState::kOpen;
+    if (other_doors || sets.back().see_through != sets.front().see_through) {
+      throw Error(fmt::format(
+          "{}: was baked with other objects than {} that open or hide nothing; measure the files one by one",
+          file.string(), command.pvs.front().string()));
     }
     if (sets.back().cells.empty()) {
       throw Error(fmt::format("{}: holds no finished cell; go on with its bake", file.string()));

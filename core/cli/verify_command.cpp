@@ -78,24 +78,6 @@ bool pastLimits(const VerifyCommand& command, const std::vector<CellProofs>& cel
   return disproved > command.max_disproved || all.provenShare() < command.min_proven;
 }
 
-/// Takes the doors' own triangles out of the sets: where they are away, no ray meets them.
-void leaveOut(const std::vector<NamedTriangles>& doors, PvsFile& pvs) {
-  const auto isDoor = [&](uint32_t id) {
-    return std::any_of(doors.begin(), doors.end(),
-                       [&](const NamedTriangles& door) { return id - door.first < door.count; });
-  };
-  for (CellPvs& cell : pvs.cells) {
-    size_t kept = 0;
-    for (size_t i = 0; i < cell.triangles.size(); ++i) {
-      if (isDoor(cell.triangles[i])) continue;
-      cell.triangles[kept] = cell.triangles[i];
-      cell.witnesses[kept++] = cell.witnesses[i];
-    }
-    cell.triangles.resize(kept);
-    cell.witnesses.resize(kept);
-  }
-}
-
 void run(const VerifyCommand& command) {
   if (command.doors == DoorState::kOpen && !command.output.empty()) {
     throw Error("--output: better sets can be written with the doors closed only", kExitUsage);
@@ -114,7 +96,6 @@ void run(const VerifyCommand& command) {
   Scene loaded = loadScene(command.scene, {.repair = command.repair});
   requireScene(pvs, loaded, command.pvs);
   const Scene scene = inState(std::move(loaded), baked, command.doors);
-  if (command.doors == DoorState::kOpen) leaveOut(baked.doors, pvs);
   const Bvh bvh = buildSceneTree(scene);
   const Judge judge(scene, bvh);
   std::vector<CellProofs> cells;

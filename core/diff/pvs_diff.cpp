@@ -61,10 +61,10 @@ void comparePlans(std::vector<ValueDifference>& list, const PvsFile& a, const Pv
   }
 }
 
-std::string doorsText(const PvsFile& pvs) {
+std::string objectsText(const std::vector<NamedTriangles>& objects) {
   std::string text;
-  for (const NamedTriangles& door : pvs.doors) {
-    text += fmt::format("{}{} ({} + {})", text.empty() ? "" : ", ", door.name, door.first, door.count);
+  for (const NamedTriangles& object : objects) {
+    text += fmt::format("{}{} ({} + {})", text.empty() ? "" : ", ", object.name, object.first, object.count);
   }
   return text.empty() ? kNone : text;
 }
@@ -81,7 +81,8 @@ std::vector<ValueDifference> compareInputs(const PvsFile& a, const PvsFile& b) {
   }
   compare(list, "witnesses", std::string(a.has_witnesses ? "yes" : "no"), b.has_witnesses ? "yes" : "no");
   comparePlans(list, a, b);
-  compare(list, "doors", doorsText(a), doorsText(b));
+  compare(list, "doors", objectsText(a.doors), objectsText(b.doors));
+  compare(list, "objects that hide nothing", objectsText(a.see_through), objectsText(b.see_through));
   return list;
 }
 

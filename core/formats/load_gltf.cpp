@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/formats/glb.h"
+#include "core/formats/gltf_alpha.h"
 #include "core/formats/gltf_data.h"
 #include "core/formats/gltf_document.h"
 #include "core/formats/gltf_tree.h"
@@ -35,9 +36,11 @@ class GltfLoader {
         file_bytes_(file_bytes),
         data_(data),
         name_(name),
+        opaque_masks_(options.opaque_masks),
         builder_(options),
         tree_(readTree(document, name)),
-        vertices_(document, tree_, data, name, builder_) {}
+        vertices_(document, tree_, data, name, builder_),
+        alpha_(document, data, name, options, builder_.surfaces()) {}
 
   Scene load() {
     reserve();
@@ -80,6 +83,16 @@ class GltfLoader {
     }
   }
 
+  /// Vertices of masked primitives get places in the mask's image, a list a primitive.
+  void spendOnPlaces() {
+    for (const GltfMesh& mesh : document_.meshes) {
+      for (const GltfPrimitive& primitive : mesh.primitives) {
+        if (hasTriangles(primitive) && primitive.mask_uv)
+          spend(document_.accessors[*primitive.positions].count);
+      }
+    }
+  }
+
   /// Of sources that were checked, so that no count is larger than its data allows.
   void spendOnVertices(const std::set<GltfVertexSource>& sources) {
     for (const GltfVertexSource& source : sources) {
@@ -118,6 +131,7 @@ class GltfLoader {
     for (const GltfVertexSource& source : sources) vertices_.check(source);
     for (const size_t accessor : index_accessors) checkIndices(accessor);
     spendOnVertices(sources);
+    spendOnPlaces();
     spend(triangles);
     builder_.reserve(positions, triangles);
   }
@@ -143,6 +157,8 @@ class GltfLoader {
     beginObject(instance, index);
     const GltfVertexRun& vertices = vertices_.add(vertices_.source(instance, primitive));
     if (document_.nodes[instance.node].skin && primitive.joints.empty()) ++unbound_;
+    surface_ = &alpha_.surface(instance.mesh, index);
+    builder_.beginSurface(surface_->flags);
     const uint64_t before = builder_.triangleCount();
     const uint64_t elements = elementCount(primitive);
     const std::string place = fmt::format("{}: meshes[{}].primitives[{}]", name_, instance.mesh, index);
@@ -159,8 +175,11 @@ class GltfLoader {
       addTriangles(primitive.mode, elements, vertices, place, [](uint64_t i) { return i; });
     }
     const uint64_t added = builder_.triangleCount() - before;
-    if (primitive.material.alpha) builder_.countAlpha(added);
-    if (primitive.material.glass && !primitive.material.alpha) builder_.countGlass(added);
+    const bool alpha = primitive.material.alpha != GltfMaterial::Alpha::kOpaque;
+    if (alpha) builder_.countAlpha(added);
+    if (primitive.material.alpha == GltfMaterial::Alpha::kMask && opaque_masks_)
+      builder_.countOpaqueMasks(added);
+    if (primitive.material.glass && !alpha) builder_.countGlass(added);
     if (!primitive.material.double_sided) builder_.countSingleSided(added);
   }
 
@@ -183,7 +202,11 @@ class GltfLoader {
     const SceneBuilder::Place place = [&] { return fmt::format("{}, triangle {}", where, triangle); };
     const auto add = [&](int64_t a, int64_t b, int64_t c) {
       if (vertices.isMirrored(a)) std::swap(b, c);
+      const uint64_t before = builder_.triangleCount();
       builder_.addPolygon(std::array{a, b, c}, vertices.range, place);
+      if (surface_->mask && builder_.triangleCount() > before) {
+        builder_.surfaceOfLast(alpha_.addTriangle(*surface_, a, b, c));
+      }
     };
     if (mode == 4) {
       for (; triangle < count; ++triangle) {
@@ -244,10 +267,13 @@ class GltfLoader {
   uint64_t steps_ = 0;
   GltfData& data_;
   const std::string& name_;
+  const bool opaque_masks_;
   SceneBuilder builder_;
   GltfTree tree_;
   GltfVertices vertices_;
-  uint64_t unbound_ = 0;  ///< primitives of skinned nodes without joints
+  GltfAlpha alpha_;
+  const GltfSurface* surface_ = nullptr;  ///< of the primitive in work
+  uint64_t unbound_ = 0;                  ///< primitives of skinned nodes without joints
 };
 
 Scene loadDocument(std::string_view text, std::string_view bin, const std::filesystem::path& file,

@@ -18,9 +18,9 @@ struct Witness {
 
 /// What a cell sees besides its set when the bake's doors are open.
 struct OpenSet {
-  CellStats stats;                  ///< of the bake of the scene without its doors, by the same seed
+  CellStats stats;                  ///< of the bake with the doors as glass, by the same seed
   std::vector<uint32_t> triangles;  ///< ids that the set has not, ascending, unique
-  std::vector<Witness> witnesses;   ///< one a triangle, or empty: hits it first where the doors are away
+  std::vector<Witness> witnesses;   ///< one a triangle, or empty: hits it first but for doors
 };
 
 /// The potentially visible set of one cell.

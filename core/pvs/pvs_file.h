@@ -27,7 +27,8 @@ struct PvsFile {
   std::string device;           ///< on which the bake began: that of the first cell; empty before it
   BakeParams params;
   bool has_witnesses = false;  ///< every cell has one witness a triangle
-  /// Objects that open: closed in the cells' sets, away in what their open sets add. Ascending, disjoint.
+  /// Objects that open: closed in the cells' sets, hiding nothing in what their open sets add. Ascending,
+  /// disjoint.
   std::vector<NamedTriangles> doors;
   /// Objects that are seen but hide nothing. Likewise.
   std::vector<NamedTriangles> see_through;

@@ -22,6 +22,17 @@ uint64_t hashScene(const Scene& scene) {
   XXH3_64bits_update(state.get(), counts.data(), sizeof(counts));
   XXH3_64bits_update(state.get(), scene.positions.data(), scene.positions.size() * sizeof(glm::vec3));
   XXH3_64bits_update(state.get(), scene.triangles.data(), scene.triangles.size() * sizeof(glm::uvec3));
+  const auto add = [&](const auto& list) {
+    const uint64_t size = list.size();
+    XXH3_64bits_update(state.get(), &size, sizeof(size));
+    XXH3_64bits_update(state.get(), list.data(), size * sizeof(list[0]));
+  };
+  if (const Surfaces& surfaces = scene.surfaces; !surfaces.empty()) {
+    add(surfaces.words);
+    add(surfaces.masked);
+    add(surfaces.masks);
+    add(surfaces.texels);
+  }
   return XXH3_64bits_digest(state.get());
 }
 

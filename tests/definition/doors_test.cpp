@@ -1,18 +1,22 @@
 // Sets with doors against their definition, in both directions: closed, the set of the whole scene; open,
-// what is seen where the doors are away besides.
+// what is seen besides where they hide nothing. The latter is that of objects to see through, too: each
+// triangle of theirs is in it that is seen where all others of theirs are away, and every other triangle that
+// is seen where all of theirs are.
 #include <gtest/gtest.h>
 
 #include "core/api/bake.h"
+#include "core/gvs/bake_cell.h"
 #include "core/pvs/door_state.h"
 #include "core/scene/find_objects.h"
-#include "core/scene/without_triangles.h"
 #include "tests/definition/definition.h"
+#include "tests/support/without_triangles.h"
 
 namespace sightline {
 namespace {
 
 using definition_test::Definition;
 using testing_support::Random;
+using testing_support::withoutTriangles;
 
 constexpr uint32_t kRays = 60'000, kDoors = 6;
 
@@ -42,24 +46,33 @@ PvsFile bakeDoors(const Scene& scene, const ViewCell& cell) {
   return bake(session, {&cell, 1}, quick(), {}, {Witnesses::kKeep, findObjects(scene, patterns, "--doors")});
 }
 
-/// Without the doors' own triangles, which nobody sees where they are away.
-CellPvs openWithoutDoors(const CellPvs& cell) {
-  const CellPvs open = inState(cell, DoorState::kOpen);
-  CellPvs rest = inState(cell, DoorState::kClosed);
-  rest.triangles.clear();
-  rest.witnesses.clear();
-  for (size_t i = 0; i < open.triangles.size(); ++i) {
-    if (open.triangles[i] < kDoors) continue;
-    rest.triangles.push_back(open.triangles[i]);
-    rest.witnesses.push_back(open.witnesses[i]);
-  }
-  return rest;
-}
-
-std::string text(std::vector<std::string> lines) {
+std::string text(const std::vector<std::string>& lines) {
   std::string all;
   for (const std::string& line : lines) all += line + "\n";
   return all;
+}
+
+/// All that is wrong with a set in which the doors hide nothing.
+std::string faultsSeenThrough(const Scene& scene, const std::vector<NamedTriangles>& doors,
+                              const ViewCell& cell, const CellPvs& set, Random& random) {
+  const auto faultsOf = [&](const Scene& part, const auto& isMeant) {
+    CellPvs meant;
+    meant.cell = cell;
+    for (size_t i = 0; i < set.triangles.size(); ++i) {
+      if (!isMeant(set.triangles[i])) continue;
+      meant.triangles.push_back(set.triangles[i]);
+      meant.witnesses.push_back(set.witnesses[i]);
+    }
+    std::vector<std::string> lines = Definition(part, cell).faults(meant, kRays, 2000, random);
+    std::erase_if(lines, [&](const std::string& line) { return !isMeant(uint32_t(std::stoul(line))); });
+    return text(lines);
+  };
+  std::string lines = faultsOf(withoutTriangles(scene, doors), [](uint32_t id) { return id >= kDoors; });
+  for (uint32_t door = 0; door < kDoors; ++door) {
+    const std::vector<NamedTriangles> others = {{"before", 0, door}, {"after", door + 1, kDoors - 1 - door}};
+    lines += faultsOf(withoutTriangles(scene, others), [&](uint32_t id) { return id == door; });
+  }
+  return lines;
 }
 
 TEST(Doors, ClosedAndOpenSetsAreRight) {
@@ -74,17 +87,32 @@ TEST(Doors, ClosedAndOpenSetsAreRight) {
     ASSERT_TRUE(pvs.cells[0].open.has_value());
     added += pvs.cells[0].open->triangles.size();
     EXPECT_EQ(text(Definition(scene, cell).faults(pvs.cells[0], kRays, 2000, random)), "");
-    const Scene open = withoutTriangles(scene, pvs.doors);
-    std::vector<std::string> faults =
-        Definition(open, cell).faults(openWithoutDoors(pvs.cells[0]), kRays, 2000, random);
-    std::erase_if(faults, [](const std::string& line) { return std::stoul(line) < kDoors; });
-    EXPECT_EQ(text(faults), "");
+    EXPECT_EQ(faultsSeenThrough(scene, pvs.doors, cell, inState(pvs.cells[0], DoorState::kOpen), random), "");
   }
   EXPECT_GT(added, 10u) << "doors that hide nothing test nothing";
 }
 
-/// The open bake is that of the scene without its doors, by the same seed; the closed one that without
-/// --doors.
+TEST(SeeThrough, SetsAreRight) {
+  for (uint32_t seed = 1; seed <= 16; ++seed) {
+    SCOPED_TRACE(seed);
+    Random random(seed);
+    const Scene scene = sceneWithDoors(random);
+    const ViewCell cell{"cell", glm::dvec3(random.point(1)), {0.5, 0.6, 0.7}, {}};
+    const std::vector<std::string> patterns = {"door-*"};
+    const std::vector<NamedTriangles> objects = findObjects(scene, patterns, "--see-through");
+    for (const char* device : {"cpu", "opencl"}) {
+      if (seed > 3 && device[0] == 'o') continue;
+      Session session(scene, {.device = device, .see_through = objects});
+      const PvsFile pvs = bake(session, {&cell, 1}, quick(), {}, Witnesses::kKeep);
+      EXPECT_EQ(pvs.see_through, objects);
+      EXPECT_EQ(pvs.scene_hash, hashScene(scene)) << "of the file's scene";
+      EXPECT_EQ(faultsSeenThrough(scene, objects, cell, pvs.cells[0], random), "") << device;
+    }
+  }
+}
+
+/// The open set adds to the closed one, which is that without --doors, what --see-through finds by the same
+/// seed.
 TEST(Doors, AreTwoBakesInOne) {
   Random random(5);
   const Scene scene = sceneWithDoors(random);
@@ -92,9 +120,10 @@ TEST(Doors, AreTwoBakesInOne) {
   const PvsFile pvs = bakeDoors(scene, cell);
   Session closed(scene, {.device = "cpu"});
   EXPECT_EQ(bake(closed, {&cell, 1}, quick()).cells[0].triangles, pvs.cells[0].triangles);
-  Session away(withoutTriangles(scene, pvs.doors), {.device = "cpu"});
-  std::vector<uint32_t> expected = bake(away, {&cell, 1}, quick()).cells[0].triangles, both;
-  std::ranges::set_union(expected, pvs.cells[0].triangles, std::back_inserter(both));
+  Session open(scene, {.device = "cpu", .see_through = pvs.doors});
+  const std::vector<uint32_t> seen = bake(open, {&cell, 1}, quick()).cells[0].triangles;
+  std::vector<uint32_t> both;
+  std::ranges::set_union(seen, pvs.cells[0].triangles, std::back_inserter(both));
   EXPECT_EQ(inState(pvs.cells[0], DoorState::kOpen).triangles, both);
 }
 

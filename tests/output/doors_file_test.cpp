@@ -152,8 +152,9 @@ TEST(DoorsFile, DiffsSeeWhatOpeningAdds) {
   const PvsDiff diff = diffPvs(a, b);
   EXPECT_FALSE(diff.same());
   ASSERT_EQ(diff.cells.size(), 1u);
-  EXPECT_EQ(diffLines(diff), (std::vector<std::string>{"cell a: 1 triangle (301) with open doors in A only",
-                                                       "cell a: 1 triangle (302) with open doors in B only"}));
+  EXPECT_EQ(diffLines(diff),
+            (std::vector<std::string>{"cell a: 1 triangle (301) with open doors in A only",
+                                      "cell a: 1 triangle (302) with open doors in B only"}));
   b.doors.clear();
   EXPECT_EQ(diffPvs(a, b).inputs[0].name, "doors");
 }
