@@ -237,6 +237,12 @@ void addStripCommand(CLI::App& app) {
   command->add_flag("--compact", a->strip.compact, "drop the vertices that no triangle uses any more");
   command->add_flag("--overwrite", a->strip.overwrite, "replace the output if it is there");
   command
+      ->add_option("--rays", a->rays,
+                   "random rays of each cell besides the bake's; what they meet stays, too")
+      ->transform(wholeNumber(0, 1u << 30))
+      ->type_name("N")
+      ->capture_default_str();
+  command
       ->add_option(
           "--check-rays", a->check_rays,
           "fresh rays of each cell that are traced in the scene and in the output, read back; 0: none")
