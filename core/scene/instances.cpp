@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/scene/largest.h"
-#include "core/scene/placement_inverse.h"
+#include "core/scene/instance_record.h"
 
 namespace sightline {
 namespace {

@@ -16,7 +16,7 @@ class CpuTracer {
   /// too deep to trace.
   CpuTracer(const Scene& scene, const Bvh& bvh);
 
-  /// The same from triangles already packed, in the order of bvh.references.
+  /// The same from triangles already packed, in the order of bvh.references. One level only.
   CpuTracer(std::vector<TriangleRecord> triangles, const Bvh& bvh);
 
   /// Smallest t, among equal t the lowest id. A direction of zero hits nothing; where the
@@ -30,6 +30,8 @@ class CpuTracer {
   uint64_t memoryBytes() const { return triangles_.size() * sizeof(TriangleRecord); }
 
  private:
+  Hit traceInstances(const Ray& ray) const;
+
   const Bvh& bvh_;
   std::vector<TriangleRecord> triangles_;
   float scene_reach_;

@@ -10,7 +10,8 @@ namespace sightline {
 
 static_assert(sizeof(TriangleRecord) == 40 && sizeof(TriangleRecordGpu) == 48);
 
-/// Records of the references bvh.references[first ... first + count).
+/// Records of the references bvh.references[first ... first + count). Those of a mesh are in its space, and
+/// their ids count from the instance's first.
 /// out has room for all of them; ranges let big scenes be uploaded piece by piece.
 void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecord> out);
 void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecordGpu> out);
