@@ -66,7 +66,7 @@ std::vector<uint32_t> containedTriangles(const Scene& scene, const Bvh& bvh, con
   const glm::dvec3 slack = (glm::abs(frame.center) + reach) * kSlack;
   std::vector<uint32_t> result;
   anyInLeaves(bvh, frame.center - reach - slack, frame.center + reach + slack, [&](uint32_t id) {
-    if (rounded.contains(scene, id)) result.push_back(id);
+    if (rounded.contains(scene.corners(id))) result.push_back(id);
     return false;
   });
   std::ranges::sort(result);
