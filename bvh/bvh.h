@@ -47,13 +47,14 @@ static_assert(sizeof(BvhNode8) == 256);
 /// space, and one over the instances' boxes, in one set of arrays. The upper tree's leaves hold one place of
 /// instance_order each.
 struct Bvh {
-  std::vector<BvhNode2> nodes2;      ///< root at top2, depth first; a scene of one leaf has child[1] empty
-  std::vector<BvhNode8> nodes8;      ///< the same tree collapsed, root at top8, depth first; same leaves
-  std::vector<uint32_t> references;  ///< triangles (of plain scenes: ids) in leaf order; one may occur several times
+  std::vector<BvhNode2> nodes2;  ///< root at top2, depth first; a scene of one leaf has child[1] empty
+  std::vector<BvhNode8> nodes8;  ///< the same tree collapsed, root at top8, depth first; same leaves
+  std::vector<uint32_t>
+      references;  ///< triangles (of plain scenes: ids) in leaf order; one may occur several times
   std::vector<InstanceRecord> instances;  ///< by id, last the plain triangles, if any; empty: one level
   std::vector<uint32_t> instance_order;   ///< indices of instances in leaf order
   uint32_t top2 = 0, top8 = 0;            ///< roots; 0 with one level
-  glm::vec3 low{0}, high{0};         ///< bounds of everything
+  glm::vec3 low{0}, high{0};              ///< bounds of everything
   double sah_cost = 0;  ///< surface area heuristic: node cost 1, triangle cost 1; 0 if the root has no area
   uint32_t depth = 0;   ///< inner nodes on the longest path of nodes2; of two levels the deeper one
   double build_seconds = 0;
@@ -68,9 +69,9 @@ struct Bvh {
 
   /// The id of a triangle in no mesh by its index: those of the instances before it come first.
   uint32_t plainId(uint32_t index) const {
-    const auto after = std::upper_bound(
-        instances.begin(), instances.end() - 1, index,
-        [](uint32_t value, const InstanceRecord& i) { return value < i.ids.z; });
+    const auto after =
+        std::upper_bound(instances.begin(), instances.end() - 1, index,
+                         [](uint32_t value, const InstanceRecord& i) { return value < i.ids.z; });
     if (after == instances.begin()) return index;
     const uvec4& ids = (after - 1)->ids;
     return index - ids.z + ids.x + ids.y;

@@ -6,20 +6,21 @@
 // the order (core/shared/triangle.h).
 #include "cl_kernels/scene.cl"
 
-static inline void intersectRecord(__global const SceneTriangle* record, ShearedRay ray, Hit* best) {
-#if SL_PACKET > 1
-  __global const float* v = record->vertices;
-  float t = intersectTriangle(ray, vec3(v[0], v[1], v[2]), vec3(v[3], v[4], v[5]), vec3(v[6], v[7], v[8]));
-  uint id = record->id;
-#else
-  float4 v0 = record->v0;
-  float t = intersectTriangle(ray, v0.xyz, record->v1.xyz, record->v2.xyz);
-  uint id = as_uint(v0.w);
-#endif
-  if (t > 0.0f && (t < best->t || (t == best->t && id < best->triangle))) {
-    best->t = t;
+/// Keeps the hit on a triangle if it is nearer than the best, or as near with a lower id.
+static inline void intersectCorners(Corners t, uint id, ShearedRay ray, Hit* best) {
+  const float at = intersectTriangle(ray, t.a, t.b, t.c);
+  if (at > 0.0f && (at < best->t || (at == best->t && id < best->triangle))) {
+    best->t = at;
     best->triangle = id;
   }
+}
+
+static inline uint idOfRecord(__global const SceneTriangle* record) {
+#if SL_PACKET > 1
+  return record->id;
+#else
+  return as_uint(record->v0.w);
+#endif
 }
 
 /// Where a walk goes on: an inner node by its index, or a leaf in a word (core/shared/bvh_node.h).
@@ -48,8 +49,35 @@ static inline uint popPlace(const uint2* stack, uint* size, float t) {
 static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best) {
   const uint first = leaf & kLeafFirstMask;
   const uint count = (leaf >> kLeafCountShift & 7u) + 1;
-  for (uint i = 0; i < count; ++i) intersectRecord(&scene.triangles[first + i], ray, best);
+  for (uint i = 0; i < count; ++i) {
+    __global const SceneTriangle* record = &scene.triangles[first + i];
+    intersectCorners(cornersOfRecord(record), idOfRecord(record), ray, best);
+  }
 }
+
+/// Which of a node's children the ray goes on to; the other one waits on the stack, if the ray meets both.
+static inline uint descend(SceneRef scene, uint place, BoxRay box_ray, float t, uint2* stack, uint* size) {
+  const BvhNode2 node = scene.nodes[place];
+  const float2 range0 =
+      intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
+  const float2 range1 =
+      intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
+  const bool meets0 = range0.x <= min(range0.y, t);
+  const bool meets1 = range1.x <= min(range1.y, t);
+  const uint place0 = placeOfChild(&node, 0);
+  const uint place1 = placeOfChild(&node, 1);
+  if (meets0 && meets1) {
+    const bool swap = range1.x < range0.x;
+    stack[(*size)++] = swap ? (uint2)(as_uint(range0.x), place0) : (uint2)(as_uint(range1.x), place1);
+    return swap ? place1 : place0;
+  }
+  if (meets0 || meets1) return meets0 ? place0 : place1;
+  return popPlace(stack, size, t);
+}
+
+#if SL_INSTANCES
+#include "cl_kernels/single_instance.cl"
+#else
 
 static Hit traceRay(SceneRef scene, Ray ray) {
   Hit best = missHit();
@@ -63,24 +91,7 @@ static Hit traceRay(SceneRef scene, Ray ray) {
   uint leaf = SL_NO_LEAF;  // waits for its triangles to be intersected
   while (place != SL_WALK_END) {
     while ((place & kLeafBit) == 0) {
-      const BvhNode2 node = scene.nodes[place];
-      const float2 range0 =
-          intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
-      const float2 range1 =
-          intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
-      const bool meets0 = range0.x <= min(range0.y, best.t);
-      const bool meets1 = range1.x <= min(range1.y, best.t);
-      const uint place0 = placeOfChild(&node, 0);
-      const uint place1 = placeOfChild(&node, 1);
-      if (meets0 && meets1) {
-        const bool swap = range1.x < range0.x;
-        stack[size++] = swap ? (uint2)(as_uint(range0.x), place0) : (uint2)(as_uint(range1.x), place1);
-        place = swap ? place1 : place0;
-      } else if (meets0 || meets1) {
-        place = meets0 ? place0 : place1;
-      } else {
-        place = popPlace(stack, &size, best.t);
-      }
+      place = descend(scene, place, box_ray, best.t, stack, &size);
       if (isLeaf(place) && leaf == SL_NO_LEAF) {
         leaf = place;
         place = popPlace(stack, &size, best.t);
@@ -97,3 +108,4 @@ static Hit traceRay(SceneRef scene, Ray ray) {
   }
   return best;
 }
+#endif

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "core/scene/largest.h"
 #include "core/scene/instance_record.h"
+#include "core/scene/largest.h"
 
 namespace sightline {
 namespace {
@@ -32,9 +32,11 @@ bool canPlace(const Placement& place, const Bounds& bounds) {
   const glm::dmat3 inverse = glm::inverse(linear);
   const double stretch = largestRowSum(linear), shrink = largestRowSum(inverse);
   // Negations, so that NaN is refused.
-  if (!(stretch <= kMostStretch && shrink <= kMostStretch && stretch * shrink <= kMostCondition)) return false;
+  if (!(stretch <= kMostStretch && shrink <= kMostStretch && stretch * shrink <= kMostCondition))
+    return false;
   const glm::dvec3 low(bounds.low), high(bounds.high);
-  if (!(largest(glm::abs(low)) <= kLargestCoordinate && largest(glm::abs(high)) <= kLargestCoordinate)) return false;
+  if (!(largest(glm::abs(low)) <= kLargestCoordinate && largest(glm::abs(high)) <= kLargestCoordinate))
+    return false;
   const glm::dvec3 origin(place.origin);
   const double sums = largestSum(place, bounds);
   double out = 0;

@@ -39,8 +39,8 @@ bool anyLeafBelow(const Bvh& bvh, uint32_t root, const SearchBox& box, Visit&& v
   return false;
 }
 
-/// The box in the instance's space, grown by what placeVertex rounds (padding of core/shared/placement.h covers
-/// that twice) and by the rounding of the inverse.
+/// The box in the instance's space, grown by what placeVertex rounds (padding of core/shared/placement.h
+/// covers that twice) and by the rounding of the inverse.
 inline SearchBox localBox(const InstanceRecord& instance, const SearchBox& box) {
   const glm::dvec3 origin(instance.place.origin);
   const glm::dvec3 middle = (box.low + box.high) * 0.5 - origin, half = (box.high - box.low) * 0.5;
@@ -71,9 +71,9 @@ bool anyInLeaves(const Bvh& bvh, const glm::dvec3& low, const glm::dvec3& high, 
     const uint32_t number = bvh.instance_order[place];
     const InstanceRecord& instance = bvh.instances[number];
     const bool in_place = (instance.roots.z & kInstanceInPlace) != 0;
-    return anyLeafBelow(bvh, instance.roots.x, in_place ? box : localBox(instance, box), [&](uint32_t reference) {
-      return visit(bvh.idOf(instance, bvh.references[reference]));
-    });
+    return anyLeafBelow(
+        bvh, instance.roots.x, in_place ? box : localBox(instance, box),
+        [&](uint32_t reference) { return visit(bvh.idOf(instance, bvh.references[reference])); });
   });
 }
 

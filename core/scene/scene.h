@@ -51,11 +51,13 @@ struct SceneInstance {
 /// on devices that trace by core/shared (DeviceInfo::exact).
 ///
 /// Invariants (kept by loadScene and the generators): at least one triangle, fewer than 2^32 - 2; every index
-/// is in range; every coordinate is at most kLargestCoordinate in magnitude; the objects' ranges are ascending,
-/// disjoint and cover all triangles; meshes follow the plain triangles and positions, and each other, without a
-/// gap; instances are ascending in first_id and do not overlap; each placement passes canPlace.
+/// is in range; every coordinate is at most kLargestCoordinate in magnitude; the objects' ranges are
+/// ascending, disjoint and cover all triangles; meshes follow the plain triangles and positions, and each
+/// other, without a gap; instances are ascending in first_id and do not overlap; each placement passes
+/// canPlace.
 struct Scene {
-  std::vector<glm::vec3> positions;   ///< world space (of meshes: their own), y up by custom; units are the file's
+  std::vector<glm::vec3>
+      positions;  ///< world space (of meshes: their own), y up by custom; units are the file's
   std::vector<glm::uvec3> triangles;  ///< indices into positions; a mesh's are into its own run
   std::vector<SceneMesh> meshes;
   std::vector<SceneInstance> instances;

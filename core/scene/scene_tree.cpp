@@ -84,9 +84,9 @@ class TreeOfTrees {
 
   Bvh build() {
     std::vector<MeshTree> meshes;
-    for (const SceneMesh& mesh : scene_.meshes) meshes.push_back(add(mesh.first_triangle, mesh.triangle_count));
-    const MeshTree plain =
-        scene_.plainTriangles() > 0 ? add(0, scene_.plainTriangles()) : MeshTree();
+    for (const SceneMesh& mesh : scene_.meshes)
+      meshes.push_back(add(mesh.first_triangle, mesh.triangle_count));
+    const MeshTree plain = scene_.plainTriangles() > 0 ? add(0, scene_.plainTriangles()) : MeshTree();
     std::vector<Bounds> boxes;
     for (const SceneInstance& instance : scene_.instances) {
       const SceneMesh& mesh = scene_.meshes[instance.mesh];
@@ -111,7 +111,9 @@ class TreeOfTrees {
   /// Behind the tree of the top level, for which addTop makes room.
   MeshTree add(uint32_t first, uint32_t count) {
     const Bvh tree = buildBvh(scene_.positions, std::span(scene_.triangles).subspan(first, count), config_);
-    MeshTree placed{uint32_t(result_.nodes2.size()), uint32_t(result_.nodes8.size()), {tree.low, tree.high},
+    MeshTree placed{uint32_t(result_.nodes2.size()),
+                    uint32_t(result_.nodes8.size()),
+                    {tree.low, tree.high},
                     upperBoxes(tree)};
     append(tree, uint32_t(result_.references.size()));
     for (const uint32_t reference : tree.references) result_.references.push_back(first + reference);

@@ -1,24 +1,27 @@
 // Meshes that a scene holds once and shows in many places: where their vertices are, and how a ray reaches
 // them.
 //
-// A vertex of an instance is *defined* as what placeVertex makes of the mesh's vertex: four float operations an
-// axis in a fixed order. Whoever writes the instances out as plain triangles (core/scene/flatten.h) and every
-// device that meets a triangle in a mesh's leaf computes it so, bit for bit, and tests that triangle with the
-// ray as it is in the world. So a hit and its t are those of the flattened scene. Only the way to the leaf is
-// another: through the mesh's own boxes, by a ray that is taken into the mesh's space (localRay). That way may
-// meet more leaves than needed, but must not miss one: its boxes are grown by what the ray may be off.
+// A vertex of an instance is *defined* as what placeVertex makes of the mesh's vertex: four float operations
+// an axis in a fixed order. Whoever writes the instances out as plain triangles (core/scene/flatten.h) and
+// every device that meets a triangle in a mesh's leaf computes it so, bit for bit, and tests that triangle
+// with the ray as it is in the world. So a hit and its t are those of the flattened scene. Only the way to
+// the leaf is another: through the mesh's own boxes, by a ray that is taken into the mesh's space (localRay).
+// That way may meet more leaves than needed, but must not miss one: its boxes are grown by what the ray may
+// be off.
 //
-// Error analysis, with u, S of triangle.h. A: the placement's three columns, B: its inverse, T: its origin; w =
-// A v + T. r_i: sum of the magnitudes of B's row i; Q: the largest magnitude in o - T; V_i: largest |v_i| of
-// the mesh; R: largest over the axes of |T_i| + sum |A_ij| V_j. Offsets are those of the local point that
+// Error analysis, with u, S of triangle.h. A: the placement's three columns, B: its inverse, T: its origin; w
+// = A v + T. r_i: sum of the magnitudes of B's row i; Q: the largest magnitude in o - T; V_i: largest |v_i|
+// of the mesh; R: largest over the axes of |T_i| + sum |A_ij| V_j. Offsets are those of the local point that
 // belongs to the hit, on axis i.
 // 1. The point o + t d is within 25 u S of the world-space triangle (triangle.h), whose vertices are within
 //    4 u R of A v + T: r_i (25 u S + 4 u R).
-// 2. B is computed in double from the placement's floats and rounded: u of every entry (doubles add 2^-30 of r_i
+// 2. B is computed in double from the placement's floats and rounded: u of every entry (doubles add 2^-30 of
+// r_i
 //    at the condition that canInstance allows). o - T rounds once; the sums of three products by 3 u: in all
 //    r_i 5 u Q for the origin, r_i 4 u S for t times the direction, as |t d| <= S.
 // 3. Slab distances err by 4.1 u (|p| + |o|) (box.h), |p| <= V_i, |o| <= r_i Q.
-// 4. Slopes below 2^-40 of the largest are replaced: at a condition of at most kMostCondition that is less than
+// 4. Slopes below 2^-40 of the largest are replaced: at a condition of at most kMostCondition that is less
+// than
 //    r_i u S.
 // In all r_i u (30 S + 9.1 Q + 4 R) + 4.1 u V_i. The boxes are grown by r_i u (48 S + 16 Q + 8 R) + 8 u V_i.
 //
@@ -86,26 +89,26 @@ SL_FUNC Ray localRay(InstanceRecord instance, Ray ray) {
   vec3 from = vec3(ray.origin.x - instance.place.origin.x, ray.origin.y - instance.place.origin.y,
                    ray.origin.z - instance.place.origin.z);
   vec3 along = vec3(ray.direction.x, ray.direction.y, ray.direction.z);
-  Ray local;
-  local.origin = vec4(weighedSum(instance.local_x, from), weighedSum(instance.local_y, from),
+  Ray inner;
+  inner.origin = vec4(weighedSum(instance.local_x, from), weighedSum(instance.local_y, from),
                       weighedSum(instance.local_z, from), 0.0f);
-  local.direction = vec4(weighedSum(instance.local_x, along), weighedSum(instance.local_y, along),
+  inner.direction = vec4(weighedSum(instance.local_x, along), weighedSum(instance.local_y, along),
                          weighedSum(instance.local_z, along), 0.0f);
-  return local;
+  return inner;
 }
 
 // The factors of S and Q above, times u.
 SL_CONST float kReachPadding = 2.8610229e-6f;   // 48 * 2^-24
 SL_CONST float kOriginPadding = 9.5367432e-7f;  // 16 * 2^-24
 
-/// What the mesh's boxes are tested with. local: localRay; scene_reach: of the whole scene.
-SL_FUNC BoxRay instanceBoxRay(InstanceRecord instance, Ray ray, Ray local, float scene_reach) {
+/// What the mesh's boxes are tested with. inner: localRay; scene_reach: of the whole scene.
+SL_FUNC BoxRay instanceBoxRay(InstanceRecord instance, Ray ray, Ray inner, float scene_reach) {
   vec4 o = ray.origin;
   vec4 t = instance.place.origin;
   float size = max(fabs(o.x), max(fabs(o.y), fabs(o.z))) + scene_reach;
   float from = max(fabs(o.x - t.x), max(fabs(o.y - t.y), fabs(o.z - t.z)));
   float spread = kReachPadding * size + kOriginPadding * from;
-  return paddedBoxRay(local, vec3(instance.local_x.w * spread + instance.padding.x,
+  return paddedBoxRay(inner, vec3(instance.local_x.w * spread + instance.padding.x,
                                   instance.local_y.w * spread + instance.padding.y,
                                   instance.local_z.w * spread + instance.padding.z));
 }
