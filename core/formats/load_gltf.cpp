@@ -3,10 +3,10 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstring>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/formats/glb.h"
 #include "core/formats/gltf_data.h"
 #include "core/formats/gltf_document.h"
 #include "core/formats/gltf_tree.h"
@@ -18,60 +18,6 @@
 
 namespace sightline {
 namespace {
-
-/// The two chunks of a GLB file.
-struct Glb {
-  std::string_view json;
-  std::string_view bin;
-};
-
-uint32_t word(std::string_view bytes, size_t offset) {
-  uint32_t value = 0;
-  std::memcpy(&value, bytes.data() + offset, sizeof(value));
-  return value;
-}
-
-/// The chunk whose header is at `offset`; moves the offset behind it.
-std::pair<uint32_t, std::string_view> takeChunk(std::string_view bytes, size_t& offset,
-                                                const std::string& name) {
-  if (bytes.size() - offset < 8)
-    throw Error(fmt::format("{}: chunk header cut off at byte {}", name, offset));
-  const size_t length = word(bytes, offset);
-  const uint32_t type = word(bytes, offset + 4);
-  offset += 8;
-  if (length > bytes.size() - offset) {
-    throw Error(fmt::format("{}: chunk of {} bytes at byte {} is cut off after {}; is the file truncated?",
-                            name, length, offset, bytes.size() - offset));
-  }
-  offset += length;
-  return {type, bytes.substr(offset - length, length)};
-}
-
-Glb splitGlb(std::string_view bytes, const std::string& name) {
-  constexpr uint32_t kMagic = 0x46546c67;
-  constexpr uint32_t kJson = 0x4e4f534a;
-  constexpr uint32_t kBin = 0x004e4942;
-  if (bytes.size() < 12 || word(bytes, 0) != kMagic) {
-    throw Error(fmt::format("{}: is no GLB file: it does not start with \"glTF\" and a header", name));
-  }
-  if (word(bytes, 4) != 2)
-    throw Error(fmt::format("{}: GLB version {}, only 2 is supported", name, word(bytes, 4)));
-  const size_t length = word(bytes, 8);
-  if (length > bytes.size() || length < 20) {
-    throw Error(fmt::format("{}: the header says {} bytes, the file has {}; is it truncated?", name, length,
-                            bytes.size()));
-  }
-  bytes = bytes.substr(0, length);
-  size_t offset = 12;
-  const auto [type, text] = takeChunk(bytes, offset, name);
-  if (type != kJson) throw Error(fmt::format("{}: the first chunk is not JSON", name));
-  Glb glb{text, {}};
-  while (offset < bytes.size()) {
-    const auto [next_type, next] = takeChunk(bytes, offset, name);
-    if (next_type == kBin && glb.bin.data() == nullptr) glb.bin = next;
-  }
-  return glb;
-}
 
 /// A small file may place a mesh, and a mesh hold an accessor, any number of times. What that may cost is a
 /// number of steps for each of the file's bytes: a step makes a vertex or a triangle. (A forest of 5,000
@@ -273,7 +219,8 @@ class GltfLoader {
     if (name.empty()) name = fmt::format("node_{}", instance.node);
     if (!mesh_name.empty() && mesh_name != name) name += "/" + mesh_name;
     if (mesh.primitives.size() > 1) name += fmt::format("/{}", primitive);
-    builder_.beginObject(name, name);
+    builder_.beginObject(name, name,
+                         GltfPart{uint32_t(instance.node), uint32_t(instance.mesh), uint32_t(primitive)});
   }
 
   void warn() {

@@ -9,6 +9,8 @@ struct SceneLoadOptions {
   /// Drop triangles with an index out of range or a coordinate that is not finite or too large instead of
   /// failing.
   bool repair = false;
+  /// Fill Scene::faces.
+  bool faces = false;
 };
 
 /// Loads .obj, .gltf, .glb or .ply (by extension, any case). Polygons are triangulated, concave ones too.

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,7 +34,7 @@ class SceneBuilder {
  public:
   using Place = std::function<std::string()>;
 
-  explicit SceneBuilder(const SceneLoadOptions& options) : repair_(options.repair) {}
+  explicit SceneBuilder(const SceneLoadOptions& options) : repair_(options.repair), faces_(options.faces) {}
 
   /// Adds a vertex; `full` is the position as precise as the file has it. Throws Error for a non-finite
   /// position, or, to repair, marks the vertex: its triangles are dropped.
@@ -41,7 +42,11 @@ class SceneBuilder {
   uint64_t positionCount() const { return scene_.positions.size(); }
 
   /// Following triangles belong to an object of that name. An empty or blank name becomes `fallback`.
-  void beginObject(std::string_view name, const std::string& fallback);
+  void beginObject(std::string_view name, const std::string& fallback,
+                   const std::optional<GltfPart>& part = {});
+
+  /// Following triangles are cut from the file's next face (Scene::faces): OBJ and PLY call it before each.
+  void nextFace() { ++face_; }
 
   /// Adds the triangles of a polygon; its vertex numbers count within `vertices`. Bad numbers and fewer than
   /// three corners are errors, or, to repair, dropped and counted.
@@ -72,6 +77,8 @@ class SceneBuilder {
   void closeObject();
 
   bool repair_;
+  bool faces_;
+  uint32_t face_ = ~0u;  ///< wraps to 0 with the first; only faces without triangles can be more than 2^32
   Scene scene_;
   SceneObject object_;
   std::vector<uint32_t> bad_vertices_;  ///< ascending; only to repair

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,15 @@
 #include "core/shared/placement.h"
 
 namespace sightline {
+
+/// What of a glTF file an object shows: places in the file's lists of nodes and meshes, and in the mesh's
+/// list of primitives. Objects of several nodes may show the same primitive.
+struct GltfPart {
+  uint32_t node = 0;
+  uint32_t mesh = 0;
+  uint32_t primitive = 0;
+  bool operator==(const GltfPart&) const = default;
+};
 
 /// A named run of triangles, at least one. Names are not empty, valid UTF-8 and without control characters;
 /// two objects may have the same. They come from
@@ -22,6 +32,8 @@ struct SceneObject {
   std::string name;
   uint32_t first_triangle = 0;
   uint32_t triangle_count = 0;
+  std::optional<GltfPart> part = {};  ///< glTF only; the object's triangles are then the primitive's, in
+                                      ///< order (without those that --repair dropped)
 };
 
 /// Triangles that a scene holds once and shows in many places, with vertices of their own: runs of
@@ -62,6 +74,10 @@ struct Scene {
   std::vector<SceneMesh> meshes;
   std::vector<SceneInstance> instances;
   std::vector<SceneObject> objects;
+  std::vector<uint32_t>
+      faces;  ///< of OBJ and PLY, if loading was asked for them, else empty: the face in its
+              ///< file that each triangle is cut from, counted from 0 through the whole
+              ///< file. OBJ: f and fo statements; PLY: rows of faces, triangles of tristrips
   uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
   uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or vertex
   uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND: traced as opaque
