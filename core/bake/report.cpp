@@ -42,8 +42,9 @@ TreeSummary summarize(const Bvh& bvh) {
   tree.nodes2 = bvh.nodes2.size();
   tree.nodes8 = bvh.nodes8.size();
   tree.references = bvh.references.size();
-  tree.bytes =
-      tree.nodes2 * sizeof(BvhNode2) + tree.nodes8 * sizeof(BvhNode8) + tree.references * sizeof(uint32_t);
+  tree.bytes = tree.nodes2 * sizeof(BvhNode2) + tree.nodes8 * sizeof(BvhNode8) +
+               tree.references * sizeof(uint32_t) + bvh.instances.size() * sizeof(InstanceRecord) +
+               bvh.instance_order.size() * sizeof(uint32_t);
   return tree;
 }
 

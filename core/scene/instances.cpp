@@ -17,10 +17,12 @@ constexpr double kMostCancellation = 4;
 constexpr uint64_t kLeastSaved = 1u << 20;
 constexpr uint64_t kLeastUse = 4;
 
+/// Infinite where an entry is not finite.
 double largestRowSum(const glm::dmat3& m) {
   double most = 0;
   for (int row = 0; row < 3; ++row) {
-    most = std::max(most, std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]));
+    const double sum = std::abs(m[0][row]) + std::abs(m[1][row]) + std::abs(m[2][row]);
+    most = std::isfinite(sum) ? std::max(most, sum) : HUGE_VAL;
   }
   return most;
 }
@@ -44,7 +46,7 @@ bool canPlace(const Placement& place, const Bounds& bounds) {
     const glm::dvec3 v(corner & 1 ? high.x : low.x, corner & 2 ? high.y : low.y, corner & 4 ? high.z : low.z);
     out = std::max(out, largest(glm::abs(linear * v + origin)));
   }
-  return sums <= kLargestCoordinate / 2 && sums <= kMostCancellation * out;
+  return std::isfinite(sums) && sums <= kLargestCoordinate / 2 && sums <= kMostCancellation * out;
 }
 
 bool instancesPay(uint64_t stored_triangles, uint64_t all_triangles) {

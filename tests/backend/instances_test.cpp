@@ -167,22 +167,23 @@ TEST_P(InstanceDevices, TheLowestIdWinsTies) {
 
 /// Sets, witnesses and statistics of all methods, contained triangles among them.
 TEST_P(InstanceDevices, BakeWhatPlainScenesBake) {
-  for (uint64_t seed = 1; seed <= 4; ++seed) {
-    const Scene scene = randomInstances(seed, 150, 300, 10), flat = flatten(scene);
+  for (uint64_t seed = 1; seed <= 2; ++seed) {
+    const Scene scene = randomInstances(seed, 60, 120, 10), flat = flatten(scene);
     const ViewCell cell = {
         "cell", {1, 2, 3}, seed % 2 == 0 ? glm::dvec3(2, 2, 0) : glm::dvec3(3, 2, 1), {10, 20, 30}};
     EXPECT_EQ(containedTriangles(scene, cell), containedTriangles(flat, cell)) << seed;
     EXPECT_EQ(containedTriangles(scene, buildSceneTree(scene), cell), containedTriangles(flat, cell)) << seed;
-    for (const Method method : {Method::kGvspp, Method::kGvs}) {
+    for (const Method method :
+         seed == 1 ? std::vector{Method::kGvspp, Method::kGvs} : std::vector{Method::kGvspp}) {
       BakeParams params = testing_support::quickParams();
       params.method = method;
-      params.n_rand = 50'000;
+      params.n_rand = 20'000;
       params.validation_rays = 10'000;
       if (method == Method::kGvs) params.n_abs_edge = params.n_rs_edge = params.n_rs_area = 3;
       const std::string name = std::string(GetParam()) == "cpu" ? "cpu" : "opencl";
       const CellPvs got = testing_support::bakeOn(name, scene, cell, params, options());
       const CellPvs wanted = testing_support::bakeOn("cpu", flat, cell, params);
-      EXPECT_GT(wanted.triangles.size(), 500u);
+      EXPECT_GT(wanted.triangles.size(), 200u);
       ASSERT_EQ(got.triangles, wanted.triangles) << seed << " " << methodName(method);
       ASSERT_EQ(got.witnesses.size(), wanted.witnesses.size());
       EXPECT_EQ(std::memcmp(got.witnesses.data(), wanted.witnesses.data(),
@@ -196,8 +197,8 @@ TEST_P(InstanceDevices, BakeWhatPlainScenesBake) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, InstanceDevices, testing::Values("cpu", "opencl", "opencl, single rays"),
-                         [](const auto& info) {
-                           const std::string name = info.param;
+                         [](const auto& test) {
+                           const std::string name = test.param;
                            return name == "cpu" ? "cpu" : name == "opencl" ? "packets" : "single";
                          });
 

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "core/scene/instances.h"
+#include "core/scene/scene_tree.h"
 #include "core/trace/trace_layout.h"
 
 namespace sightline {
@@ -32,6 +34,10 @@ void VulkanScene::describe(VulkanRunner& runner) const {
 
 VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, const Bvh& bvh,
                               uint32_t part_limit) {
+  if (scene.hasInstances()) {
+    const Scene plain = flatten(scene);
+    return uploadVulkanScene(context, plain, buildSceneTree(plain), part_limit);
+  }
   checkTraceable(bvh);
   const auto count = scene.triangleCount();
   const uint32_t possible = largestPart(context, count);
