@@ -60,7 +60,9 @@ SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t has
           scene.glass_triangles,
           scene.single_sided_triangles,
           scene.hidden_nodes,
-          scene.warnings};
+          scene.warnings,
+          scene.instances.size(),
+          scene.triangles.size()};
 }
 
 std::vector<CellWarning> warningsOf(const BakeReport& report, size_t index) {

@@ -30,6 +30,8 @@ struct SceneSummary {
   uint64_t triangles = 0, vertices = 0, objects = 0;
   uint64_t degenerate = 0, repaired = 0, alpha = 0, glass = 0, single_sided = 0, hidden_nodes = 0;
   std::vector<std::string> warnings;  ///< of loading (Scene)
+  uint64_t instances = 0;             ///< 0: the scene is traced as plain triangles
+  uint64_t stored_triangles = 0;      ///< in the scene and its tree
 };
 SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t hash);
 

@@ -237,13 +237,18 @@ void runBake(const BakeOptions& options) {
                   std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
   const TextOutputs outputs(reports);
-  Session session(loadScene(options.scene, {.repair = options.repair}), sessionOptions(options));
+  Session session(loadScene(options.scene, {.repair = options.repair, .flatten = options.flatten}),
+                  sessionOptions(options));
   const Scene& scene = session.scene();
   Bake bake(bakeInputs(session, loadCells(options.cells), options.params,
                        options.witnesses ? Witnesses::kKeep : Witnesses::kDrop),
             options.out, options.overwrite);
   say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangleCount(),
                   counted(scene.objects.size(), "object"), counted(bake.head().planned.size(), "cell")));
+  if (scene.hasInstances()) {
+    say(fmt::format("instances: {}; {} triangles are stored (--flatten writes them out)",
+                    scene.instances.size(), scene.triangles.size()));
+  }
   BakeReport report = startReport(options, scene, bake);
 
   int exit_code = 0;

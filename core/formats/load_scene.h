@@ -11,14 +11,18 @@ struct SceneLoadOptions {
   bool repair = false;
   /// Fill Scene::faces.
   bool faces = false;
+  /// Write out meshes that several nodes use, whether or not they would pay as instances. Ids, hash and sets
+  /// are the same either way.
+  bool flatten = false;
 };
 
 /// Loads .obj, .gltf, .glb or .ply (by extension, any case). Polygons are triangulated, concave ones too.
 /// glTF: the default scene with its nodes' transforms; skins in the pose of their joints, morph targets with
 /// their default weights; mirrored nodes keep their front (the corners' order is turned). Materials count,
-/// textures are not touched. Files that the scene names are read only from its own folder and those below.
-/// Throws Error with file and place. The largest files: 20 million triangles take about 1.7 GiB in all as
-/// OBJ, half of it as GLB or PLY, and a sixth of OBJ's time.
+/// textures are not touched. A mesh that several nodes show is stored once, where that pays (instancesPay)
+/// and the file has nothing that one sees through. Files that the scene names are read only from its own
+/// folder and those below. Throws Error with file and place. The largest files: 20 million triangles take
+/// about 1.7 GiB in all as OBJ, half of it as GLB or PLY, and a sixth of OBJ's time.
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace sightline
