@@ -86,8 +86,17 @@ class GltfLoader {
     return {instance.mesh, weights ? *weights : document_.meshes[instance.mesh].weights};
   }
 
-  /// Collects what several nodes show without a skin. Nothing where there is something to see through:
-  /// whether a ray passes is kept for each triangle of the plain scene.
+  uint64_t triangleCount(const GltfMesh& mesh) const {
+    uint64_t sum = 0;
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      if (hasTriangles(primitive)) sum += triangleCount(primitive, elementCount(primitive));
+    }
+    return sum;
+  }
+
+  /// Collects what several nodes show without a skin, where that pays: other scenes are placed in double, as
+  /// they are. Nothing where there is something to see through: whether a ray passes is kept for each
+  /// triangle of the plain scene.
   void findMeshes() {
     for (const GltfInstance& instance : tree_.instances) {
       for (const GltfPrimitive& primitive : document_.meshes[instance.mesh].primitives) {
@@ -98,6 +107,13 @@ class GltfLoader {
     std::erase_if(shared_, [&](const auto& entry) {
       return entry.second.users.size() < 2 || usesLittleOfItsVertices(document_.meshes[entry.first.first]);
     });
+    uint64_t all = 0, repeated = 0;
+    for (const GltfInstance& instance : tree_.instances)
+      all += triangleCount(document_.meshes[instance.mesh]);
+    for (const auto& [key, mesh] : shared_) {
+      repeated += (mesh.users.size() - 1) * triangleCount(document_.meshes[key.first]);
+    }
+    if (!instancesPay(all - repeated, all)) shared_.clear();
   }
 
   /// Where all meshes of a file share one list of vertices, each would be read through once a mesh.

@@ -11,8 +11,7 @@ struct SceneLoadOptions {
   bool repair = false;
   /// Fill Scene::faces.
   bool faces = false;
-  /// Write out meshes that several nodes use, whether or not they would pay as instances. Ids, hash and sets
-  /// are the same either way.
+  /// Write out meshes that would be instances (instancesPay). Ids, hash and sets are the same either way.
   bool flatten = false;
 };
 

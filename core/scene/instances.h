@@ -14,9 +14,10 @@ namespace sightline {
 /// bounds: of the mesh's positions.
 bool canPlace(const Placement& place, const Bounds& bounds);
 
-/// Whether a scene is smaller, and not slower beyond that, with instances: they pay from four times as many
-/// triangles as are stored on, where at least 2^20 need not be stored (about 150 MiB with their tree). Rays
-/// take up to half as long again through two levels, so smaller scenes are flattened.
+/// Whether a scene is stored with instances: from four times as many triangles as are stored on, where at
+/// least 2^20 need not be stored (about 150 MiB with their tree). Rays can take up to half as long again
+/// through two levels, so smaller scenes stay plain; and the vertices of plain scenes are placed in double,
+/// which is finer than placeVertex by up to 4 units in the last place.
 bool instancesPay(uint64_t stored_triangles, uint64_t all_triangles);
 
 /// Fills in what follows from meshes, first_id and place of all instances. The scene holds all positions and
