@@ -12,6 +12,7 @@
 struct LeafHit {
   float t;
   uint leaf;
+  uint part;  ///< the instance of the top level that it was met in
 };
 
 const float kFarthest = 3.402823466e38f;
@@ -34,11 +35,11 @@ LeafHit traceNearest(Ray ray) {
   while (rayQueryProceedEXT(query)) {
   }
   if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
-    return LeafHit(0.0f, kNoTriangle);
+    return LeafHit(0.0f, kNoTriangle, 0u);
   }
   uint part = rayQueryGetIntersectionInstanceCustomIndexEXT(query, true);
   uint primitive = rayQueryGetIntersectionPrimitiveIndexEXT(query, true);
-  return LeafHit(rayQueryGetIntersectionTEXT(query, true), leafOf(part, primitive));
+  return LeafHit(rayQueryGetIntersectionTEXT(query, true), leafOf(part, primitive), part);
 }
 
 #else
@@ -52,20 +53,21 @@ uint itemIndex() {
 LeafHit traceNearest(Ray ray) {
   traceRayEXT(accelerationStructureEXT(SL_THE_LAUNCH.tlas), gl_RayFlagsOpaqueEXT, 0xffu, 0u, 0u, 0u,
               ray.origin.xyz, 0.0f, ray.direction.xyz, kFarthest, 0);
-  if (found.y == kNoTriangle) return LeafHit(0.0f, kNoTriangle);
-  return LeafHit(uintBitsToFloat(found.x), leafOf(found.y, found.z));
+  if (found.y == kNoTriangle) return LeafHit(0.0f, kNoTriangle, 0u);
+  return LeafHit(uintBitsToFloat(found.x), leafOf(found.y, found.z), found.y);
 }
 
 #endif
 
 /// Nearest hit of a ray, by leaf; a ray without direction hits nothing.
 LeafHit nearestHit(Ray ray) {
-  if (!hasDirection(ray)) return LeafHit(0.0f, kNoTriangle);
+  if (!hasDirection(ray)) return LeafHit(0.0f, kNoTriangle, 0u);
   return traceNearest(ray);
 }
 
 uint triangleOf(LeafHit hit) {
-  return hit.leaf == kNoTriangle ? kNoTriangle : Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[hit.leaf];
+  if (hit.leaf == kNoTriangle) return kNoTriangle;
+  return Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[hit.leaf] + Buffer_uint(SL_THE_LAUNCH.part_ids).at[hit.part];
 }
 
 /// Nearest hit of a ray, by triangle; t of a miss is 0.

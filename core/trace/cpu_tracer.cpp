@@ -59,8 +59,8 @@ inline void keepNearer(float t, uint32_t id, Hit& best) {
   if (t > 0 && (t < best.t || (t == best.t && id < best.triangle))) best = {t, id};
 }
 
-/// Walks a tree of 8-wide nodes; calls leaf(first, count) for the leaves that may hold a hit nearer than or as
-/// near as best, which shrinks with the hits.
+/// Walks a tree of 8-wide nodes; calls leaf(first, count) for the leaves that may hold a hit nearer than or
+/// as near as best, which shrinks with the hits.
 template <typename Leaf>
 inline void walkTree(const BvhNode8* nodes, uint32_t root, const BoxRay& ray, const Hit& best, Leaf&& leaf) {
   const PlaneOffsets rows = planeOffsets(ray);

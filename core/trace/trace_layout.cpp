@@ -8,6 +8,16 @@
 #include "core/base/error.h"
 
 namespace sightline {
+
+uint32_t recordId(const Scene& scene, const Bvh& bvh, uint32_t reference) {
+  if (!scene.hasInstances()) return reference;
+  if (reference < scene.plainTriangles()) return bvh.plainId(reference);
+  const auto after =
+      std::upper_bound(scene.meshes.begin(), scene.meshes.end(), reference,
+                       [](uint32_t value, const SceneMesh& mesh) { return value < mesh.first_triangle; });
+  return reference - (after - 1)->first_triangle;
+}
+
 namespace {
 
 void pack(const std::array<glm::vec3, 3>& vertices, uint32_t id, TriangleRecord& record) {
@@ -21,16 +31,6 @@ void pack(const std::array<glm::vec3, 3>& vertices, uint32_t id, TriangleRecordG
   record.v0 = vec4(vertices[0], uintBitsToFloat(id));
   record.v1 = vec4(vertices[1], 0.0f);
   record.v2 = vec4(vertices[2], 0.0f);
-}
-
-/// What an instance's first id is added to (of those in no mesh: 0).
-uint32_t recordId(const Scene& scene, const Bvh& bvh, uint32_t reference) {
-  if (!scene.hasInstances()) return reference;
-  if (reference < scene.plainTriangles()) return bvh.plainId(reference);
-  const auto after =
-      std::upper_bound(scene.meshes.begin(), scene.meshes.end(), reference,
-                       [](uint32_t value, const SceneMesh& mesh) { return value < mesh.first_triangle; });
-  return reference - (after - 1)->first_triangle;
 }
 
 template <typename Record>

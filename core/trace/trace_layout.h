@@ -16,6 +16,9 @@ static_assert(sizeof(TriangleRecord) == 40 && sizeof(TriangleRecordGpu) == 48);
 void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecord> out);
 void packTriangles(const Scene& scene, const Bvh& bvh, size_t first, std::span<TriangleRecordGpu> out);
 
+/// A triangle's id in the record of a reference: what an instance's first id is added to.
+uint32_t recordId(const Scene& scene, const Bvh& bvh, uint32_t reference);
+
 /// Triangles in leaves (Bvh::references) that a single ray's walk can number (cl_kernels/trace_single.cl).
 constexpr uint64_t kMostGpuReferences = uint64_t(kLeafFirstMask) + 1 - 8;
 
