@@ -5,7 +5,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "core/pvs/pvs_file.h"
 #include "tests/cli/run_program.h"
 #include "tests/scene/files.h"
 
@@ -42,7 +41,7 @@ TEST(InstancesCommand, TheyAreSaidAndMakeTheSameSet) {
       " --device cpu --n-rand 2000 --validation-rays 1000 --max-rays 100000 --witnesses -o ";
   run(bake + path("a.pvs") + " --report " + path("a.json"), {"instances: ", "--flatten writes them out"});
   run(bake + path("b.pvs") + " --report " + path("b.json") + " --flatten", {});
-  EXPECT_EQ(readText(folder / "a.pvs"), readText(folder / "b.pvs"));
+  run("diff " + path("a.pvs") + " " + path("b.pvs"), {});  // witnesses and statistics as well
   EXPECT_GT(reported(folder / "a.json", "instances"), 100u);
   EXPECT_LT(reported(folder / "a.json", "stored_triangles"), reported(folder / "a.json", "triangles") / 4);
   EXPECT_EQ(reported(folder / "b.json", "instances"), 0u);
