@@ -7,10 +7,9 @@
 #undef SL_VERTICES
 
 /// placeCorners, three axes at once.
-static inline void intersectInMesh8(__global const InstanceRecord* instance, __global const TriangleRecord* record,
-                                    Packet* p) {
+static inline void intersectInMesh8(SceneRef scene, __global const InstanceRecord* instance, uint place, Packet* p) {
   const bool mirrors = (instance->roots.z & kInstanceMirrors) != 0;
-  __global const float* stored = record->vertices;
+  __global const float* stored = scene.triangles[place].vertices;
   float vertices[9];
   for (uint corner = 0; corner < 3; ++corner) {
     __global const float* v = stored + 3 * corner;
@@ -18,20 +17,12 @@ static inline void intersectInMesh8(__global const InstanceRecord* instance, __g
         ((instance->place.origin + v[0] * instance->place.x) + v[1] * instance->place.y) + v[2] * instance->place.z;
     vstore3(placed.xyz, mirrors && corner != 0 ? 3 - corner : corner, vertices);
   }
-  intersectPlaced8(vertices, instance->ids.x + record->id, p);
+  intersectPlaced8(scene, place, vertices, instance->ids.x + scene.triangles[place].id, p);
 }
 
 #define SL_WALK walkMesh8
 #define SL_WALK_PARAM , __global const InstanceRecord* instance
-#define SL_VISIT(i) intersectInMesh8(instance, &scene.triangles[i], p)
-#include "cl_kernels/packet_walk.inl"
-#undef SL_WALK
-#undef SL_WALK_PARAM
-#undef SL_VISIT
-
-#define SL_WALK walkTriangles8
-#define SL_WALK_PARAM
-#define SL_VISIT(i) intersectStored8(scene.triangles[i].vertices, scene.triangles[i].id, p)
+#define SL_VISIT(i) intersectInMesh8(scene, instance, i, p)
 #include "cl_kernels/packet_walk.inl"
 #undef SL_WALK
 #undef SL_WALK_PARAM

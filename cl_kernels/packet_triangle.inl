@@ -1,6 +1,7 @@
-// Eight rays against a triangle: whether they hit it, and whether that counts. Included for each address space that
-// vertices lie in: SL_INTERSECT names the function, SL_VERTICES the space. vertices: x, y, z of the three.
-static inline void SL_INTERSECT(SL_VERTICES const float* vertices, uint id, Packet* p) {
+// Eight rays against the triangle of a record: whether they hit it, and whether that counts. Included for each address
+// space that vertices lie in: SL_INTERSECT names the function, SL_VERTICES the space. place: of the record; vertices: x,
+// y, z of the three, in the world.
+static inline void SL_INTERSECT(SceneRef scene, uint place, SL_VERTICES const float* vertices, uint id, Packet* p) {
   float8 az = vertices[p->axis_z] - p->origin_z;
   float8 ax = (vertices[p->axis_x] - p->origin_x) - p->shear_x * az;
   float8 ay = (vertices[p->axis_y] - p->origin_y) - p->shear_y * az;
@@ -35,6 +36,19 @@ static inline void SL_INTERSECT(SL_VERTICES const float* vertices, uint id, Pack
   // An infinite t is no hit: p->t starts at infinity, and the id of a miss is the largest.
   int8 closer = (t < p->t) | ((t == p->t) & (id < p->triangle) & (t < as_float(0x7f800000u)));
   int8 hit = inside & (t > 0.0f) & closer;
+#if SL_HAS_SURFACES
+  const uint near = laneBits(inside & (t > 0.0f) & (t <= p->t));
+  if (near == 0) return;
+  const uint surface = scene.surfaces[kSurfaceHeaderWords + place];
+  if ((surface & kSurfaceGlass) != 0) {
+    p->glass |= near;
+    return;
+  }
+  if (surface != 0) {
+    const int8 bits = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+    hit = hit & (((int8)(int)lanesThatHold(scene, surface, vertices, p, laneBits(hit)) & bits) != 0);
+  }
+#endif
   p->t = hit ? t : p->t;
   p->triangle = hit ? (uint8)id : p->triangle;
 }

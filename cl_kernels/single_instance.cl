@@ -9,16 +9,17 @@ static inline bool isLeafOfEither(uint place) {
 }
 
 static inline void intersectLeafIn(SceneRef scene, __global const InstanceRecord* instance, uint leaf, ShearedRay ray,
-                                   Hit* best) {
+                                   Hit* best, bool* glass) {
   if ((instance->roots.z & kInstanceInPlace) != 0) {
-    intersectLeaf(scene, leaf, ray, best);
+    intersectLeaf(scene, leaf, ray, best, glass);
     return;
   }
   const uint first = leaf & kLeafFirstMask;
   const uint count = (leaf >> kLeafCountShift & 7u) + 1;
   for (uint i = 0; i < count; ++i) {
     __global const SceneTriangle* record = &scene.triangles[first + i];
-    intersectCorners(placedCorners(instance, record), instance->ids.x + idOfRecord(record), ray, best);
+    intersectCorners(scene, first + i, placedCorners(instance, record), instance->ids.x + recordId(record), ray, best,
+                     glass);
   }
 }
 
@@ -29,7 +30,8 @@ static inline BoxRay boxRayIn(SceneRef scene, __global const InstanceRecord* ins
   return instanceBoxRay(copy, ray, localRay(copy, ray), scene.reach);
 }
 
-static Hit traceRay(SceneRef scene, Ray ray) {
+/// glass: as of the other traceRay.
+static Hit traceRay(SceneRef scene, Ray ray, bool* glass) {
   Hit best = missHit();
   if (!hasDirection(ray)) return best;
   const ShearedRay sheared = shearRay(ray);
@@ -50,7 +52,7 @@ static Hit traceRay(SceneRef scene, Ray ray) {
       }
     }
     while (inside != 0 && leaf != SL_NO_LEAF) {
-      intersectLeafIn(scene, inside, leaf, sheared, &best);
+      intersectLeafIn(scene, inside, leaf, sheared, &best, glass);
       leaf = SL_NO_LEAF;
       if (isLeafOfEither(place)) {
         leaf = place;

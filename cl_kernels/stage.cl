@@ -56,9 +56,9 @@ static inline Corners cornersOf(const StageRef* stage, uint triangle) {
   const StoredTriangle at = findTriangle(stage->scene, stage->scene.instance_count, triangle);
   __global const SceneTriangle* record = &stage->scene.triangles[stage->place_of[at.triangle]];
   if (at.instance != kNoTriangle) return placedCorners(&stage->scene.instances[at.instance], record);
-  return cornersOfRecord(record);
+  return recordCorners(record);
 #else
-  return cornersOfRecord(&stage->scene.triangles[stage->place_of[triangle]]);
+  return recordCorners(&stage->scene.triangles[stage->place_of[triangle]]);
 #endif
 }
 

@@ -24,7 +24,34 @@ typedef struct Packet {
   uint back_x, back_y, back_z;  // 1: the direction is negative
   float8 t;
   uint8 triangle;
+  uint glass;  // as of HitPacket
 } Packet;
+
+#if SL_HAS_SURFACES
+/// A lane's ray as the triangle test has it.
+static inline ShearedRay shearedLane(const Packet* p, uint lane) {
+  ShearedRay ray;
+  ray.origin = vec4(((const float*)&p->origin_x)[lane], ((const float*)&p->origin_y)[lane],
+                    ((const float*)&p->origin_z)[lane], 0.0f);
+  ray.shear = vec4(((const float*)&p->shear_x)[lane], ((const float*)&p->shear_y)[lane],
+                   ((const float*)&p->shear_z)[lane], 0.0f);
+  ray.axes = uvec4(p->axis_x, p->axis_y, p->axis_z, 0u);
+  return ray;
+}
+
+/// Those of the lanes, a bit each, that meet something where they hit the triangle: lane by lane.
+static inline uint lanesThatHold(SceneRef scene, uint surface, __global const float* v, const Packet* p, uint lanes) {
+  uint holding = 0;
+  for (uint left = lanes; left != 0; left &= left - 1) {
+    const uint lane = slLowestBit(left);
+    if (surfaceHolds(scene.surfaces, surface, shearedLane(p, lane), vec3(v[0], v[1], v[2]), vec3(v[3], v[4], v[5]),
+                     vec3(v[6], v[7], v[8]))) {
+      holding |= 1u << lane;
+    }
+  }
+  return holding;
+}
+#endif
 
 static inline float8 preciseDepth8(float8 fax, float8 fay, float8 faz, float8 fbx, float8 fby, float8 fbz,
                                    float8 fcx, float8 fcy, float8 fcz) {
@@ -60,21 +87,25 @@ static inline float8 inverseSlope(float8 direction, float8 smallest) {
 #undef SL_INTERSECT
 #undef SL_VERTICES
 
-#if SL_INSTANCES
-
-#include "cl_kernels/packet_instance.cl"
-
-#else
+/// A triangle that is stored where it is.
+static inline void intersectRecord8(SceneRef scene, uint place, Packet* p) {
+  intersectStored8(scene, place, scene.triangles[place].vertices, scene.triangles[place].id, p);
+}
 
 #define SL_WALK walkTriangles8
 #define SL_WALK_PARAM
-#define SL_VISIT(i) intersectStored8(scene.triangles[i].vertices, scene.triangles[i].id, p)
+#define SL_VISIT(i) intersectRecord8(scene, i, p)
 #include "cl_kernels/packet_walk.inl"
+#undef SL_WALK
+#undef SL_WALK_PARAM
+#undef SL_VISIT
 
+#if SL_INSTANCES
+#include "cl_kernels/packet_instance.cl"
+#else
 static inline void tracePacket(SceneRef scene, const RayPacket* rays, Packet* p) {
   walkTriangles8(scene, 0, p);
 }
-
 #endif
 
 /// The nearest hits of all lanes; t of a miss is not a number to use. Lanes of one class (signs of the
@@ -113,6 +144,7 @@ static HitPacket traceLanes(SceneRef scene, const RayPacket* rays) {
   HitPacket hits;
   hits.t = (float8)as_float(0x7f800000u);
   hits.triangle = (uint8)kNoTriangle;
+  hits.glass = 0;
   while (waiting != 0) {
     uint first = 31u - clz(waiting & (0u - waiting));
     uint taken = waiting & lanesLike(first, back_x) & lanesLike(first, back_y) & lanesLike(first, back_z) &
@@ -135,9 +167,11 @@ static HitPacket traceLanes(SceneRef scene, const RayPacket* rays) {
     int8 takes_part = ((int8)(int)taken & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
     p.t = takes_part ? (float8)as_float(0x7f800000u) : (float8)-1.0f;
     p.triangle = (uint8)kNoTriangle;
+    p.glass = 0;
     tracePacket(scene, rays, &p);
     hits.t = takes_part ? p.t : hits.t;
     hits.triangle = takes_part ? p.triangle : hits.triangle;
+    hits.glass |= p.glass & taken;
   }
   return hits;
 }
@@ -153,7 +187,8 @@ static inline void storeHits(HitPacket packet, Hit* hits) {
   }
 }
 
-static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
+/// Nearest hits. Returns the bits of the rays that met glass before what ends them, and perhaps of others.
+static uint traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
   RayPacket packet;
 #define SL_LANES(field, a)                                                                      \
   (float8)(rays[0].field.a, rays[1].field.a, rays[2].field.a, rays[3].field.a, rays[4].field.a, \
@@ -165,7 +200,9 @@ static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
   packet.direction[1] = SL_LANES(direction, y);
   packet.direction[2] = SL_LANES(direction, z);
 #undef SL_LANES
-  storeHits(traceLanes(scene, &packet), hits);
+  const HitPacket found = traceLanes(scene, &packet);
+  storeHits(found, hits);
+  return found.glass;
 }
 
 #endif

@@ -6,21 +6,25 @@
 // the order (core/shared/triangle.h).
 #include "cl_kernels/scene.cl"
 
-/// Keeps the hit on a triangle if it is nearer than the best, or as near with a lower id.
-static inline void intersectCorners(Corners t, uint id, ShearedRay ray, Hit* best) {
-  const float at = intersectTriangle(ray, t.a, t.b, t.c);
-  if (at > 0.0f && (at < best->t || (at == best->t && id < best->triangle))) {
-    best->t = at;
-    best->triangle = id;
+/// What a hit on the triangle of a record counts for: the best hit, if it is nearer, or as near with a lower id.
+/// place: of the record; v: its corners in the world. glass: set where the ray meets glass before the best hit so far.
+static inline void intersectCorners(SceneRef scene, uint place, Corners v, uint id, ShearedRay ray, Hit* best,
+                                    bool* glass) {
+  const float t = intersectTriangle(ray, v.a, v.b, v.c);
+#if SL_HAS_SURFACES
+  if (!(t > 0.0f && t <= best->t)) return;
+  const uint surface = scene.surfaces[kSurfaceHeaderWords + place];
+  if ((surface & kSurfaceGlass) != 0) {
+    *glass = true;
+    return;
   }
-}
-
-static inline uint idOfRecord(__global const SceneTriangle* record) {
-#if SL_PACKET > 1
-  return record->id;
+  if (t == best->t && id >= best->triangle) return;
+  if (!surfaceHolds(scene.surfaces, surface, ray, v.a, v.b, v.c)) return;
 #else
-  return as_uint(record->v0.w);
+  if (!(t > 0.0f && (t < best->t || (t == best->t && id < best->triangle)))) return;
 #endif
+  best->t = t;
+  best->triangle = id;
 }
 
 /// Where a walk goes on: an inner node by its index, or a leaf in a word (core/shared/bvh_node.h).
@@ -46,12 +50,12 @@ static inline uint popPlace(const uint2* stack, uint* size, float t) {
   return entry.y;
 }
 
-static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best) {
+static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best, bool* glass) {
   const uint first = leaf & kLeafFirstMask;
   const uint count = (leaf >> kLeafCountShift & 7u) + 1;
   for (uint i = 0; i < count; ++i) {
     __global const SceneTriangle* record = &scene.triangles[first + i];
-    intersectCorners(cornersOfRecord(record), idOfRecord(record), ray, best);
+    intersectCorners(scene, first + i, recordCorners(record), recordId(record), ray, best, glass);
   }
 }
 
@@ -78,8 +82,8 @@ static inline uint descend(SceneRef scene, uint place, BoxRay box_ray, float t, 
 #if SL_INSTANCES
 #include "cl_kernels/single_instance.cl"
 #else
-
-static Hit traceRay(SceneRef scene, Ray ray) {
+/// glass: set where the ray meets glass before what ends it, and perhaps where only behind.
+static Hit traceRay(SceneRef scene, Ray ray, bool* glass) {
   Hit best = missHit();
   if (!hasDirection(ray)) return best;
   const BoxRay box_ray = boxRay(ray, scene.reach);
@@ -98,7 +102,7 @@ static Hit traceRay(SceneRef scene, Ray ray) {
       }
     }
     while (leaf != SL_NO_LEAF) {
-      intersectLeaf(scene, leaf, sheared, &best);
+      intersectLeaf(scene, leaf, sheared, &best, glass);
       leaf = SL_NO_LEAF;
       if (isLeaf(place)) {
         leaf = place;

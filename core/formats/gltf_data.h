@@ -20,6 +20,9 @@ class GltfData {
   /// Bytes of a buffer view, decompressed. Throws Error.
   std::span<const uint8_t> view(size_t index);
 
+  /// Bytes that a uri names, in it or in a file beside the document. place: of the uri. Throws Error.
+  std::vector<uint8_t> resource(const std::string& uri, const std::string& place) const;
+
   /// Of the buffers loaded so far that are not the GLB's chunk.
   uint64_t bytesOfUris() const;
 

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/formats/glb.h"
+#include "core/formats/gltf_alpha.h"
 #include "core/formats/gltf_data.h"
 #include "core/formats/gltf_document.h"
 #include "core/formats/gltf_tree.h"
@@ -22,6 +23,9 @@
 
 namespace sightline {
 namespace {
+
+/// Of the triangles of shared meshes.
+const GltfSurface kOpaqueSurface{};
 
 /// A small file may place a mesh, and a mesh hold an accessor, any number of times. What that may cost is a
 /// number of steps for each of the file's bytes: a step makes a vertex or a triangle. (A forest of 5,000
@@ -42,7 +46,8 @@ class GltfLoader {
         options_(options),
         builder_(options),
         tree_(readTree(document, name)),
-        vertices_(document, tree_, data, name, builder_) {}
+        vertices_(document, tree_, data, name, builder_),
+        alpha_(document, data, name, options, builder_.surfaces()) {}
 
   Scene load() {
     findMeshes();
@@ -98,9 +103,12 @@ class GltfLoader {
   /// they are. Nothing where there is something to see through: whether a ray passes is kept for each
   /// triangle of the plain scene.
   void findMeshes() {
+    if (options_.cull_back_faces) return;
     for (const GltfInstance& instance : tree_.instances) {
       for (const GltfPrimitive& primitive : document_.meshes[instance.mesh].primitives) {
-        if (primitive.material.alpha || primitive.material.glass) return shared_.clear();
+        if (primitive.material.alpha != GltfMaterial::Alpha::kOpaque || primitive.material.glass) {
+          return shared_.clear();
+        }
       }
       if (!document_.nodes[instance.node].skin) shared_[keyOf(instance)].users.push_back(&instance);
     }
@@ -215,6 +223,16 @@ class GltfLoader {
     }
   }
 
+  /// Vertices of masked primitives get places in the mask's image, a list a primitive.
+  void spendOnPlaces() {
+    for (const GltfMesh& mesh : document_.meshes) {
+      for (const GltfPrimitive& primitive : mesh.primitives) {
+        if (hasTriangles(primitive) && primitive.mask_uv)
+          spend(document_.accessors[*primitive.positions].count);
+      }
+    }
+  }
+
   /// Of sources that were checked, so that no count is larger than its data allows.
   void spendOnVertices(const std::set<GltfVertexSource>& sources) {
     for (const GltfVertexSource& source : sources) {
@@ -254,6 +272,7 @@ class GltfLoader {
     for (const GltfVertexSource& source : sources) vertices_.check(source);
     for (const size_t accessor : index_accessors) checkIndices(accessor);
     spendOnVertices(sources);
+    spendOnPlaces();
     spend(triangles);
     builder_.reserve(positions, stored);
   }
@@ -286,6 +305,8 @@ class GltfLoader {
     beginObject(instance, index);
     const GltfVertexRun& vertices = from_->add(sourceOf(instance, primitive));
     if (document_.nodes[instance.node].skin && primitive.joints.empty()) ++unbound_;
+    surface_ = into_ == &builder_ ? &alpha_.surface(instance.mesh, index) : &kOpaqueSurface;
+    into_->beginSurface(surface_->flags);
     const uint64_t before = into_->triangleCount();
     const uint64_t elements = elementCount(primitive);
     const std::string place = fmt::format("{}: meshes[{}].primitives[{}]", name_, instance.mesh, index);
@@ -302,8 +323,11 @@ class GltfLoader {
       addTriangles(primitive.mode, elements, vertices, place, [](uint64_t i) { return i; });
     }
     const uint64_t added = into_->triangleCount() - before;
-    if (primitive.material.alpha) into_->countAlpha(added);
-    if (primitive.material.glass && !primitive.material.alpha) into_->countGlass(added);
+    const bool alpha = primitive.material.alpha != GltfMaterial::Alpha::kOpaque;
+    if (alpha) into_->countAlpha(added);
+    if (primitive.material.alpha == GltfMaterial::Alpha::kMask && options_.opaque_masks)
+      into_->countOpaqueMasks(added);
+    if (primitive.material.glass && !alpha) into_->countGlass(added);
     if (!primitive.material.double_sided) into_->countSingleSided(added);
   }
 
@@ -326,7 +350,11 @@ class GltfLoader {
     const SceneBuilder::Place place = [&] { return fmt::format("{}, triangle {}", where, triangle); };
     const auto add = [&](int64_t a, int64_t b, int64_t c) {
       if (vertices.isMirrored(a)) std::swap(b, c);
+      const uint64_t before = into_->triangleCount();
       into_->addPolygon(std::array{a, b, c}, vertices.range, place);
+      if (surface_->mask && into_->triangleCount() > before) {
+        into_->surfaceOfLast(alpha_.addTriangle(*surface_, a, b, c));
+      }
     };
     if (mode == 4) {
       for (; triangle < count; ++triangle) {
@@ -391,6 +419,8 @@ class GltfLoader {
   SceneBuilder builder_;
   GltfTree tree_;
   GltfVertices vertices_;
+  GltfAlpha alpha_;
+  const GltfSurface* surface_ = nullptr;  ///< of the primitive in work
   std::map<MeshKey, SharedMesh> shared_;
   // Where primitives are added: to the scene, or to a mesh.
   SceneBuilder* into_ = &builder_;

@@ -73,6 +73,7 @@ void checkMeshes(const Scene& scene) {
 /// Returns how many triangles there are in all.
 size_t checkInstances(const Scene& scene) {
   checkMeshes(scene);
+  if (!scene.surfaces.empty()) throw Error("a scene with instances has surfaces: flatten it first");
   std::vector<Bounds> bounds;
   for (const SceneMesh& mesh : scene.meshes) {
     Bounds box{scene.positions[mesh.first_position], scene.positions[mesh.first_position]};

@@ -105,6 +105,17 @@ uint64_t hashScene(const Scene& scene) {
   } else {
     hasher.addMade(scene.triangleCount(), [&](uint64_t i) { return scene.vertexNumbers(uint32_t(i)); });
   }
+  const auto add = [&](const auto& list) {
+    const uint64_t size = list.size();
+    hasher.add(&size, 1);
+    hasher.add(list.data(), list.size());
+  };
+  if (const Surfaces& surfaces = scene.surfaces; !surfaces.empty()) {
+    add(surfaces.words);
+    add(surfaces.masked);
+    add(surfaces.masks);
+    add(surfaces.texels);
+  }
   return hasher.digest();
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/base/extents.h"
+#include "core/scene/surfaces.h"
 #include "core/shared/placement.h"
 
 namespace sightline {
@@ -66,7 +67,7 @@ struct SceneInstance {
 /// is in range; every coordinate is at most kLargestCoordinate in magnitude; the objects' ranges are
 /// ascending, disjoint and cover all triangles; meshes follow the plain triangles and positions, and each
 /// other, without a gap; instances are ascending in first_id and do not overlap; each placement passes
-/// canPlace.
+/// canPlace; a scene with instances has no surfaces.
 struct Scene {
   std::vector<glm::vec3>
       positions;  ///< world space (of meshes: their own), y up by custom; units are the file's
@@ -75,15 +76,17 @@ struct Scene {
   std::vector<SceneInstance> instances;
   std::vector<SceneObject> objects;
   std::vector<uint32_t>
-      faces;  ///< of OBJ and PLY, if loading was asked for them, else empty: the face in its
-              ///< file that each triangle is cut from, counted from 0 through the whole
-              ///< file. OBJ: f and fo statements; PLY: rows of faces, triangles of tristrips
+      faces;          ///< of OBJ and PLY, if loading was asked for them, else empty: the face in its
+                      ///< file that each triangle is cut from, counted from 0 through the whole
+                      ///< file. OBJ: f and fo statements; PLY: rows of faces, triangles of tristrips
+  Surfaces surfaces;  ///< holes, glass, and sides; empty where there are none
   uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
   uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or vertex
-  uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND: traced as opaque
+  uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND
   uint64_t glass_triangles = 0;         ///< others that one sees through (glTF transmission, OBJ d, Tr or
-                                        ///< map_d): traced as opaque
-  uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false: traced as two-sided
+                                        ///< map_d)
+  uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false
+  uint64_t opaque_mask_triangles = 0;   ///< those of glTF masks that were loaded as opaque
   uint64_t hidden_nodes = 0;            ///< left out by glTF's KHR_node_visibility, with those below them
   std::vector<std::string> warnings;    ///< a line each: what else of the file is not in the scene, or only
                                         ///< roughly
@@ -155,8 +158,8 @@ struct Scene {
   uint32_t runEnd(uint32_t id, StoredTriangle at) const;
 };
 
-/// Hash of positions and triangles (XXH3, 64 bit): what a PVS depends on. Of a scene with instances that of
-/// the plain scene it stands for.
+/// Hash of positions and triangles, and of surfaces where there are any (XXH3, 64 bit): what a PVS depends
+/// on. Of a scene with instances that of the plain scene it stands for.
 uint64_t hashScene(const Scene& scene);
 
 /// Axis-aligned bounds of the vertices that triangles use.

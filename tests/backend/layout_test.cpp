@@ -162,8 +162,8 @@ Layout vulkanLayout() {
 #define SL_ADDRESS(field) launch.fields.push_back(SL_FIELD("uint64", field))
   SL_ADDRESS(tlas), SL_ADDRESS(part_starts), SL_ADDRESS(part_ids), SL_ADDRESS(instances),
       SL_ADDRESS(leaf_ids);
-  SL_ADDRESS(corners), SL_ADDRESS(hemicube), SL_ADDRESS(hemicubes), SL_ADDRESS(chunk_bounds),
-      SL_ADDRESS(draws), SL_ADDRESS(raster_leaves);
+  SL_ADDRESS(corners), SL_ADDRESS(surfaces), SL_ADDRESS(hemicube), SL_ADDRESS(hemicubes),
+      SL_ADDRESS(chunk_bounds), SL_ADDRESS(draws), SL_ADDRESS(raster_leaves);
 #undef SL_ADDRESS
 #define SL_WORD(field) launch.fields.push_back(SL_FIELD("uint", field))
   SL_WORD(raster_resolution), SL_WORD(raster_first), SL_WORD(chunk_count), SL_WORD(triangle_count);

@@ -74,6 +74,7 @@ void VulkanScene::describe(VulkanRunner& runner) const {
   launch.leaf_ids = leaf_ids.address();
   runner.bind(StageBuffer::place_of, leaf_of);
   launch.corners = corners.address();
+  if (surfaces.bytes() > 0) launch.surfaces = surfaces.address();
 }
 
 VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, const Bvh& bvh,
@@ -81,8 +82,8 @@ VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, 
   checkTraceable(bvh);
   const auto count = static_cast<uint32_t>(scene.triangles.size());
   const uint32_t possible = largestPart(context, count);
-  const LeafParts leaves =
-      splitIntoParts(bvh, count, part_limit > 0 ? std::min(part_limit, possible) : possible);
+  const LeafParts leaves = splitBySurface(
+      splitIntoParts(bvh, count, part_limit > 0 ? std::min(part_limit, possible) : possible), scene.surfaces);
 
   VulkanScene result;
   VulkanUpload upload(context);
@@ -113,6 +114,11 @@ VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, 
     const uint64_t bytes = bvh.instances.size() * sizeof(InstanceRecord);
     result.instances = context.buffer(bytes, "instances of the scene");
     upload.write(result.instances, bvh.instances.data(), bytes);
+  }
+  if (featuresOf(scene.surfaces).any()) {
+    const std::vector<uint32_t> surfaces = packSurfaces(scene.surfaces, leaves.ids);
+    result.surfaces = context.buffer(surfaces.size() * 4, "surfaces of the scene");
+    upload.write(result.surfaces, surfaces.data(), surfaces.size() * 4);
   }
   upload.finish();
   result.tree = buildVulkanTree(context, result.corners, leaves.parts, placed.parts);
