@@ -61,7 +61,7 @@ LeafParts splitIntoParts(const Bvh& bvh, uint32_t triangle_count, uint32_t limit
         seen[id] = true;
       }
       const auto count = static_cast<uint32_t>(result.ids.size()) - first;
-      if (count > 0) result.parts.push_back({first, count, root});
+      if (count > 0) result.parts.push_back({first, count, true, root});
     }
   }
   return result;

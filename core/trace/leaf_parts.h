@@ -11,8 +11,8 @@ namespace sightline {
 struct LeafPart {
   uint32_t first = 0;
   uint32_t count = 0;  ///< at least 1
-  uint32_t root = 0;   ///< of the tree that it is a part of, in nodes2 (InstanceRecord::roots)
   bool opaque = true;  ///< rays end on all of them
+  uint32_t root = 0;   ///< of the tree that it is a part of, in nodes2 (InstanceRecord::roots)
 };
 
 /// The order in which a ray-tracing driver gets the triangles, in parts that it can build.
