@@ -24,7 +24,34 @@ typedef struct Packet {
   uint back_x, back_y, back_z;  // 1: the direction is negative
   float8 t;
   uint8 triangle;
+  uint glass;  // as of HitPacket
 } Packet;
+
+#if SL_HAS_SURFACES
+/// A lane's ray as the triangle test has it.
+static inline ShearedRay shearedLane(const Packet* p, uint lane) {
+  ShearedRay ray;
+  ray.origin = vec4(((const float*)&p->origin_x)[lane], ((const float*)&p->origin_y)[lane],
+                    ((const float*)&p->origin_z)[lane], 0.0f);
+  ray.shear = vec4(((const float*)&p->shear_x)[lane], ((const float*)&p->shear_y)[lane],
+                   ((const float*)&p->shear_z)[lane], 0.0f);
+  ray.axes = uvec4(p->axis_x, p->axis_y, p->axis_z, 0u);
+  return ray;
+}
+
+/// Those of the lanes, a bit each, that meet something where they hit the triangle: lane by lane.
+static inline uint lanesThatHold(SceneRef scene, uint surface, __global const float* v, const Packet* p, uint lanes) {
+  uint holding = 0;
+  for (uint left = lanes; left != 0; left &= left - 1) {
+    const uint lane = slLowestBit(left);
+    if (surfaceHolds(scene.surfaces, surface, shearedLane(p, lane), vec3(v[0], v[1], v[2]), vec3(v[3], v[4], v[5]),
+                     vec3(v[6], v[7], v[8]))) {
+      holding |= 1u << lane;
+    }
+  }
+  return holding;
+}
+#endif
 
 static inline float8 preciseDepth8(float8 fax, float8 fay, float8 faz, float8 fbx, float8 fby, float8 fbz,
                                    float8 fcx, float8 fcy, float8 fcz) {
@@ -43,115 +70,6 @@ static inline float8 preciseDepth8(float8 fax, float8 fay, float8 faz, float8 fb
   return convert_float8((mixed | (det == 0.0)) ? (double8)0.0 : depth);
 }
 
-static inline void intersectRecord8(__global const TriangleRecord* record, Packet* p) {
-  __global const float* vertices = record->vertices;
-  float8 az = vertices[p->axis_z] - p->origin_z;
-  float8 ax = (vertices[p->axis_x] - p->origin_x) - p->shear_x * az;
-  float8 ay = (vertices[p->axis_y] - p->origin_y) - p->shear_y * az;
-  float8 bz = vertices[3 + p->axis_z] - p->origin_z;
-  float8 bx = (vertices[3 + p->axis_x] - p->origin_x) - p->shear_x * bz;
-  float8 by = (vertices[3 + p->axis_y] - p->origin_y) - p->shear_y * bz;
-  float8 cz = vertices[6 + p->axis_z] - p->origin_z;
-  float8 cx = (vertices[6 + p->axis_x] - p->origin_x) - p->shear_x * cz;
-  float8 cy = (vertices[6 + p->axis_y] - p->origin_y) - p->shear_y * cz;
-  float8 u = cx * by - cy * bx;
-  float8 v = ax * cy - ay * cx;
-  float8 w = bx * ay - by * ax;
-  float8 lowest = least(u, least(v, w));
-  float8 highest = most(u, most(v, w));
-  int8 inside = (lowest >= 0.0f) | (highest <= 0.0f);
-  if (laneBits(inside) == 0) return;
-
-  float8 det = u + v + w;
-  float8 reach = most(most(most(fabs(ax), fabs(ay)), most(fabs(bx), fabs(by))), most(fabs(cx), fabs(cy)));
-  float8 nearest = least(az, least(bz, cz));
-  float8 farthest = most(az, most(bz, cz));
-  float8 area = fabs(det);
-  float8 trusted = area * most(fabs(nearest), fabs(farthest));
-  int8 rough = (trusted < most(reach * reach * (farthest - nearest), (float8)kUnderflowGuard)) |
-               (area < kUnderflowGuard) | (u == 0.0f) | (v == 0.0f) | (w == 0.0f);
-  float8 depth = (u * az + v * bz + w * cz) / det;
-  if (laneBits(rough & inside) != 0) {
-    float8 precise = preciseDepth8(ax, ay, az, bx, by, bz, cx, cy, cz);
-    depth = rough ? precise : depth;
-  }
-  float8 t = depth * p->shear_z;
-  uint id = record->id;
-  // An infinite t is no hit: p->t starts at infinity, and the id of a miss is the largest.
-  int8 closer = (t < p->t) | ((t == p->t) & (id < p->triangle) & (t < as_float(0x7f800000u)));
-  int8 hit = inside & (t > 0.0f) & closer;
-  p->t = hit ? t : p->t;
-  p->triangle = hit ? (uint8)id : p->triangle;
-}
-
-/// Visits the tree with all lanes; lanes with t < 0 take no part.
-static void tracePacket(SceneRef scene, Packet* p) {
-  float8 stack_near[SL_MAX_DEPTH];
-  uint stack_child[SL_MAX_DEPTH];
-  uint stack_count[SL_MAX_DEPTH];
-  uint size = 0;
-  uint child = 0;
-  uint count = 0;
-  // Where a node keeps the planes that the rays meet first and last, in floats; child 1 has them two further.
-  const size_t back_x = p->back_x, ahead_x = 1 - back_x;
-  const size_t back_y = 4 + p->back_y, ahead_y = 5 - p->back_y;
-  const size_t back_z = 8 + p->back_z, ahead_z = 9 - p->back_z;
-  for (;;) {
-    while (count == 0) {
-      __global const float* node = (__global const float*)&scene.nodes[child];
-      __global const uint* links = (__global const uint*)(node + 12);
-      __global const float* first_x = node + back_x;
-      __global const float* first_y = node + back_y;
-      __global const float* first_z = node + back_z;
-      __global const float* last_x = node + ahead_x;
-      __global const float* last_y = node + ahead_y;
-      __global const float* last_z = node + ahead_z;
-      float8 near0 =
-          most(most(slab(first_x[0], p->inverse_x, p->near_x), slab(first_y[0], p->inverse_y, p->near_y)),
-               most(slab(first_z[0], p->inverse_z, p->near_z), (float8)0.0f));
-      float8 far0 =
-          least(least(slab(last_x[0], p->inverse_x, p->far_x), slab(last_y[0], p->inverse_y, p->far_y)),
-                least(slab(last_z[0], p->inverse_z, p->far_z), p->t));
-      float8 near1 =
-          most(most(slab(first_x[2], p->inverse_x, p->near_x), slab(first_y[2], p->inverse_y, p->near_y)),
-               most(slab(first_z[2], p->inverse_z, p->near_z), (float8)0.0f));
-      float8 far1 =
-          least(least(slab(last_x[2], p->inverse_x, p->far_x), slab(last_y[2], p->inverse_y, p->far_y)),
-                least(slab(last_z[2], p->inverse_z, p->far_z), p->t));
-      uint meets0 = laneBits(near0 <= far0);
-      uint meets1 = laneBits(near1 <= far1);
-      if (meets0 != 0 && meets1 != 0) {
-        // First the child that most lanes of both enter first.
-        uint both = meets0 | meets1;
-        uint sooner1 = laneBits(near1 < near0) & both;
-        bool swap = 2 * popcount(sooner1) > popcount(both);
-        stack_near[size] = swap ? near0 : near1;
-        size_t first = swap ? 1 : 0;
-        stack_child[size] = links[1 - first];
-        stack_count[size] = links[3 - first];
-        ++size;
-        child = links[first];
-        count = links[2 + first];
-      } else if (meets0 != 0) {
-        child = links[0];
-        count = links[2];
-      } else if (meets1 != 0) {
-        child = links[1];
-        count = links[3];
-      } else {
-        break;
-      }
-    }
-    for (uint i = child; i < child + count; ++i) intersectRecord8(&scene.triangles[i], p);
-    do {
-      if (size == 0) return;
-      --size;
-    } while (laneBits(stack_near[size] <= p->t) == 0);
-    child = stack_child[size];
-    count = stack_count[size];
-  }
-}
-
 /// Bits of the lanes whose direction's sign or depth axis is that of lane `first`.
 static inline uint lanesLike(uint first, uint bits) {
   return (bits >> first & 1u) != 0 ? bits : ~bits;
@@ -162,6 +80,33 @@ static inline float8 inverseSlope(float8 direction, float8 smallest) {
   float8 bounded = direction < 0.0f ? -smallest : smallest;
   return 1.0f / (fabs(direction) < smallest ? bounded : direction);
 }
+
+#define SL_INTERSECT intersectStored8
+#define SL_VERTICES __global
+#include "cl_kernels/packet_triangle.inl"
+#undef SL_INTERSECT
+#undef SL_VERTICES
+
+/// A triangle that is stored where it is.
+static inline void intersectRecord8(SceneRef scene, uint place, Packet* p) {
+  intersectStored8(scene, place, scene.triangles[place].vertices, scene.triangles[place].id, p);
+}
+
+#define SL_WALK walkTriangles8
+#define SL_WALK_PARAM
+#define SL_VISIT(i) intersectRecord8(scene, i, p)
+#include "cl_kernels/packet_walk.inl"
+#undef SL_WALK
+#undef SL_WALK_PARAM
+#undef SL_VISIT
+
+#if SL_INSTANCES
+#include "cl_kernels/packet_instance.cl"
+#else
+static inline void tracePacket(SceneRef scene, const RayPacket* rays, Packet* p) {
+  walkTriangles8(scene, 0, p);
+}
+#endif
 
 /// The nearest hits of all lanes; t of a miss is not a number to use. Lanes of one class (signs of the
 /// direction, axis of depth) go through the tree together; rays that were put side by side well are of one
@@ -199,6 +144,7 @@ static HitPacket traceLanes(SceneRef scene, const RayPacket* rays) {
   HitPacket hits;
   hits.t = (float8)as_float(0x7f800000u);
   hits.triangle = (uint8)kNoTriangle;
+  hits.glass = 0;
   while (waiting != 0) {
     uint first = 31u - clz(waiting & (0u - waiting));
     uint taken = waiting & lanesLike(first, back_x) & lanesLike(first, back_y) & lanesLike(first, back_z) &
@@ -221,9 +167,11 @@ static HitPacket traceLanes(SceneRef scene, const RayPacket* rays) {
     int8 takes_part = ((int8)(int)taken & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
     p.t = takes_part ? (float8)as_float(0x7f800000u) : (float8)-1.0f;
     p.triangle = (uint8)kNoTriangle;
-    tracePacket(scene, &p);
+    p.glass = 0;
+    tracePacket(scene, rays, &p);
     hits.t = takes_part ? p.t : hits.t;
     hits.triangle = takes_part ? p.triangle : hits.triangle;
+    hits.glass |= p.glass & taken;
   }
   return hits;
 }
@@ -239,7 +187,8 @@ static inline void storeHits(HitPacket packet, Hit* hits) {
   }
 }
 
-static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
+/// Nearest hits. Returns the bits of the rays that met glass before what ends them, and perhaps of others.
+static uint traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
   RayPacket packet;
 #define SL_LANES(field, a)                                                                      \
   (float8)(rays[0].field.a, rays[1].field.a, rays[2].field.a, rays[3].field.a, rays[4].field.a, \
@@ -251,7 +200,9 @@ static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
   packet.direction[1] = SL_LANES(direction, y);
   packet.direction[2] = SL_LANES(direction, z);
 #undef SL_LANES
-  storeHits(traceLanes(scene, &packet), hits);
+  const HitPacket found = traceLanes(scene, &packet);
+  storeHits(found, hits);
+  return found.glass;
 }
 
 #endif

@@ -6,20 +6,25 @@
 // the order (core/shared/triangle.h).
 #include "cl_kernels/scene.cl"
 
-static inline void intersectRecord(__global const SceneTriangle* record, ShearedRay ray, Hit* best) {
-#if SL_PACKET > 1
-  __global const float* v = record->vertices;
-  float t = intersectTriangle(ray, vec3(v[0], v[1], v[2]), vec3(v[3], v[4], v[5]), vec3(v[6], v[7], v[8]));
-  uint id = record->id;
-#else
-  float4 v0 = record->v0;
-  float t = intersectTriangle(ray, v0.xyz, record->v1.xyz, record->v2.xyz);
-  uint id = as_uint(v0.w);
-#endif
-  if (t > 0.0f && (t < best->t || (t == best->t && id < best->triangle))) {
-    best->t = t;
-    best->triangle = id;
+/// What a hit on the triangle of a record counts for: the best hit, if it is nearer, or as near with a lower id.
+/// place: of the record; v: its corners in the world. glass: set where the ray meets glass before the best hit so far.
+static inline void intersectCorners(SceneRef scene, uint place, Corners v, uint id, ShearedRay ray, Hit* best,
+                                    bool* glass) {
+  const float t = intersectTriangle(ray, v.a, v.b, v.c);
+#if SL_HAS_SURFACES
+  if (!(t > 0.0f && t <= best->t)) return;
+  const uint surface = scene.surfaces[kSurfaceHeaderWords + place];
+  if ((surface & kSurfaceGlass) != 0) {
+    *glass = true;
+    return;
   }
+  if (t == best->t && id >= best->triangle) return;
+  if (!surfaceHolds(scene.surfaces, surface, ray, v.a, v.b, v.c)) return;
+#else
+  if (!(t > 0.0f && (t < best->t || (t == best->t && id < best->triangle)))) return;
+#endif
+  best->t = t;
+  best->triangle = id;
 }
 
 /// Where a walk goes on: an inner node by its index, or a leaf in a word (core/shared/bvh_node.h).
@@ -45,13 +50,40 @@ static inline uint popPlace(const uint2* stack, uint* size, float t) {
   return entry.y;
 }
 
-static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best) {
+static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best, bool* glass) {
   const uint first = leaf & kLeafFirstMask;
   const uint count = (leaf >> kLeafCountShift & 7u) + 1;
-  for (uint i = 0; i < count; ++i) intersectRecord(&scene.triangles[first + i], ray, best);
+  for (uint i = 0; i < count; ++i) {
+    __global const SceneTriangle* record = &scene.triangles[first + i];
+    intersectCorners(scene, first + i, recordCorners(record), recordId(record), ray, best, glass);
+  }
 }
 
-static Hit traceRay(SceneRef scene, Ray ray) {
+/// Which of a node's children the ray goes on to; the other one waits on the stack, if the ray meets both.
+static inline uint descend(SceneRef scene, uint place, BoxRay box_ray, float t, uint2* stack, uint* size) {
+  const BvhNode2 node = scene.nodes[place];
+  const float2 range0 =
+      intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
+  const float2 range1 =
+      intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
+  const bool meets0 = range0.x <= min(range0.y, t);
+  const bool meets1 = range1.x <= min(range1.y, t);
+  const uint place0 = placeOfChild(&node, 0);
+  const uint place1 = placeOfChild(&node, 1);
+  if (meets0 && meets1) {
+    const bool swap = range1.x < range0.x;
+    stack[(*size)++] = swap ? (uint2)(as_uint(range0.x), place0) : (uint2)(as_uint(range1.x), place1);
+    return swap ? place1 : place0;
+  }
+  if (meets0 || meets1) return meets0 ? place0 : place1;
+  return popPlace(stack, size, t);
+}
+
+#if SL_INSTANCES
+#include "cl_kernels/single_instance.cl"
+#else
+/// glass: set where the ray meets glass before what ends it, and perhaps where only behind.
+static Hit traceRay(SceneRef scene, Ray ray, bool* glass) {
   Hit best = missHit();
   if (!hasDirection(ray)) return best;
   const BoxRay box_ray = boxRay(ray, scene.reach);
@@ -63,31 +95,14 @@ static Hit traceRay(SceneRef scene, Ray ray) {
   uint leaf = SL_NO_LEAF;  // waits for its triangles to be intersected
   while (place != SL_WALK_END) {
     while ((place & kLeafBit) == 0) {
-      const BvhNode2 node = scene.nodes[place];
-      const float2 range0 =
-          intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
-      const float2 range1 =
-          intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
-      const bool meets0 = range0.x <= min(range0.y, best.t);
-      const bool meets1 = range1.x <= min(range1.y, best.t);
-      const uint place0 = placeOfChild(&node, 0);
-      const uint place1 = placeOfChild(&node, 1);
-      if (meets0 && meets1) {
-        const bool swap = range1.x < range0.x;
-        stack[size++] = swap ? (uint2)(as_uint(range0.x), place0) : (uint2)(as_uint(range1.x), place1);
-        place = swap ? place1 : place0;
-      } else if (meets0 || meets1) {
-        place = meets0 ? place0 : place1;
-      } else {
-        place = popPlace(stack, &size, best.t);
-      }
+      place = descend(scene, place, box_ray, best.t, stack, &size);
       if (isLeaf(place) && leaf == SL_NO_LEAF) {
         leaf = place;
         place = popPlace(stack, &size, best.t);
       }
     }
     while (leaf != SL_NO_LEAF) {
-      intersectLeaf(scene, leaf, sheared, &best);
+      intersectLeaf(scene, leaf, sheared, &best, glass);
       leaf = SL_NO_LEAF;
       if (isLeaf(place)) {
         leaf = place;
@@ -97,3 +112,4 @@ static Hit traceRay(SceneRef scene, Ray ray) {
   }
   return best;
 }
+#endif

@@ -32,6 +32,26 @@ Json toJson(const std::vector<CellWarning>& warnings) {
   return list;
 }
 
+Json toJson(const std::optional<Leaks>& leaks) {
+  if (!leaks) return nullptr;
+  Json json = {{"narrower_than", leaks->width},
+               {"triangles", leaks->triangles},
+               {"rays", leaks->rays},
+               {"seconds", leaks->seconds}};
+  if (leaks->triangles == 0) return json;
+  json["first_triangle"] = leaks->first_triangle;
+  json["place"] = {leaks->place.x, leaks->place.y, leaks->place.z};
+  return json;
+}
+
+Json toJson(const std::vector<NamedTriangles>& objects) {
+  Json list = Json::array();
+  for (const NamedTriangles& object : objects) {
+    list.push_back({{"name", object.name}, {"first_triangle", object.first}, {"triangles", object.count}});
+  }
+  return list;
+}
+
 }  // namespace
 
 TreeSummary summarize(const Bvh& bvh) {
@@ -42,8 +62,9 @@ TreeSummary summarize(const Bvh& bvh) {
   tree.nodes2 = bvh.nodes2.size();
   tree.nodes8 = bvh.nodes8.size();
   tree.references = bvh.references.size();
-  tree.bytes =
-      tree.nodes2 * sizeof(BvhNode2) + tree.nodes8 * sizeof(BvhNode8) + tree.references * sizeof(uint32_t);
+  tree.bytes = tree.nodes2 * sizeof(BvhNode2) + tree.nodes8 * sizeof(BvhNode8) +
+               tree.references * sizeof(uint32_t) + bvh.instances.size() * sizeof(InstanceRecord) +
+               bvh.instance_order.size() * sizeof(uint32_t);
   return tree;
 }
 
@@ -59,7 +80,11 @@ SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t has
           scene.glass_triangles,
           scene.single_sided_triangles,
           scene.hidden_nodes,
-          scene.warnings};
+          scene.opaque_mask_triangles,
+          countSurfaces(scene.surfaces),
+          scene.warnings,
+          scene.instances.size(),
+          scene.triangles.size()};
 }
 
 std::vector<CellWarning> warningsOf(const BakeReport& report, size_t index) {
@@ -79,6 +104,7 @@ std::string reportJson(const BakeReport& report) {
     Json json = cellToJson(cell.cell);
     json["warnings"] = toJson(warningsOf(report, i));
     addCellStatistics(json, cell, report.scene.triangles);
+    json["leaks"] = i < report.leaks.size() ? toJson(report.leaks[i]) : Json(nullptr);
     cells.push_back(json);
   }
   const Json json = {{"sightline", report.version},
@@ -91,7 +117,10 @@ std::string reportJson(const BakeReport& report) {
                       {{"set", report.set.empty() ? Json(nullptr) : Json(report.set)},
                        {"spatial_splits", report.spatial_splits},
                        {"witnesses", report.witnesses},
-                       {"repair", report.repair}}},
+                       {"repair", report.repair},
+                       {"doors", toJson(report.doors)},
+                       {"see_through", toJson(report.see_through)},
+                       {"smallest_hole", report.params.smallest_hole > 0}}},
                      {"scene", toJson(report.scene)},
                      {"tree", toJson(report.tree, report.scene.triangles)},
                      {"planned_cells", report.planned_cells},
@@ -106,14 +135,25 @@ std::string reportJson(const BakeReport& report) {
 std::vector<std::string> sceneWarnings(const SceneSummary& scene) {
   std::string materials;
   const auto add = [&](const std::string& what) { materials += (materials.empty() ? "" : "; ") + what; };
-  if (scene.alpha != 0) add(fmt::format("{} triangles with alpha are traced as opaque", scene.alpha));
-  if (scene.glass != 0) add(fmt::format("{} triangles of glass are traced as opaque", scene.glass));
-  if (scene.single_sided != 0) {
+  if (scene.opaque_masks != 0) {
+    add(fmt::format("{} triangles with masks are traced as opaque", scene.opaque_masks));
+  }
+  if (scene.single_sided != 0 && scene.surfaces.front_only == 0) {
     add(fmt::format("{} single-sided triangles are traced as two-sided", scene.single_sided));
   }
   std::vector<std::string> warnings = scene.warnings;
   if (!materials.empty()) warnings.insert(warnings.begin(), materials);
   return warnings;
+}
+
+std::string leaksText(const Leaks& leaks) {
+  if (leaks.triangles == 0) return {};
+  return fmt::format(
+      "{} of the set {} seen only through gaps narrower than {:.3g}, triangle {} through one at ({:.6g}, "
+      "{:.6g}, "
+      "{:.6g}); --smallest-hole {:.3g} closes them",
+      counted(leaks.triangles, "triangle"), leaks.triangles == 1 ? "is" : "are", leaks.width,
+      leaks.first_triangle, leaks.place.x, leaks.place.y, leaks.place.z, leaks.width);
 }
 
 uint64_t peakProcessBytes() {

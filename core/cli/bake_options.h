@@ -19,7 +19,8 @@ struct BakeOptions {
   std::string set = "auto";  ///< as device_options.set, for the report
   DeviceOptions device_options;
   BakeParams params;
-  bool repair = false, witnesses = false, spatial_splits = false, overwrite = false;
+  std::vector<std::string> doors, see_through;  ///< patterns of names
+  bool repair = false, flatten = false, witnesses = false, spatial_splits = false, overwrite = false;
   bool strict_cells = false;              ///< a warning about a cell is an error
   FreeSide free_side = FreeSide::kFront;  ///< of the scene's faces, for the warning of cells in solids
 };
@@ -30,6 +31,9 @@ std::vector<std::string> bakeMethods();
 /// Declares how a bake samples: all of its parameters but method, limits and validation. params must live as
 /// long as `command`, here and below.
 void declareSampling(CLI::App& command, BakeParams& params);
+
+/// Declares when a cell's bake ends, and how many rays measure it.
+void declareLimits(CLI::App& command, BakeParams& params);
 
 /// Declares where the work is done: --device, --threads, --set, --memory-budget, --spatial-splits.
 void declareMachine(CLI::App& command, std::string& device, DeviceOptions& options, bool& spatial_splits);

@@ -44,11 +44,15 @@ bool isPvs(const std::filesystem::path& file) {
   return std::memcmp(start, kPvsMagic, sizeof(start)) == 0 || extension == ".pvs" || extension == ".part";
 }
 
-void showScene(const std::filesystem::path& file, bool repair) {
-  const Scene scene = loadScene(file, {.repair = repair});
+void showScene(const std::filesystem::path& file, bool repair, bool flatten) {
+  const Scene scene = loadScene(file, {.repair = repair, .flatten = flatten});
   const Bounds bounds = sceneBounds(scene);
   row("scene", file.string());
   row("triangles", std::to_string(scene.triangleCount()));
+  if (scene.hasInstances()) {
+    row("instances", fmt::format("{} of {} meshes; {} triangles are stored", scene.instances.size(),
+                                 scene.meshes.size(), scene.triangles.size()));
+  }
   row("vertices", std::to_string(scene.vertexCount()));
   row("bounds", point(bounds.low) + " to " + point(bounds.high));
   row("degenerate",
@@ -58,6 +62,11 @@ void showScene(const std::filesystem::path& file, bool repair) {
   if (scene.glass_triangles != 0) row("glass", fmt::format("{} triangles", scene.glass_triangles));
   if (scene.single_sided_triangles != 0) {
     row("single-sided", fmt::format("{} triangles", scene.single_sided_triangles));
+  }
+  const SurfaceCounts surfaces = countSurfaces(scene.surfaces);
+  if (!scene.surfaces.empty()) {
+    row("surfaces", fmt::format("{} triangles with holes, {} seen through, {} not there from behind",
+                                surfaces.masked, surfaces.glass, surfaces.front_only));
   }
   for (const std::string& warning : scene.warnings) row("warning", warning);
   row("hash", hashText(hashScene(scene)));
@@ -103,18 +112,28 @@ void showPvs(const std::filesystem::path& file) {
                                pvs.intersector.empty() ? "" : ", intersection test of " + pvs.intersector));
   showParams(pvs.params);
   row("witnesses", pvs.has_witnesses ? "yes" : "no");
+  for (const NamedTriangles& object : pvs.see_through) {
+    row("hides nothing",
+        fmt::format("{} (from triangle {}, {} of them)", object.name, object.first, object.count));
+  }
+  for (const NamedTriangles& door : pvs.doors) {
+    row("door", fmt::format("{} (from triangle {}, {} of them)", door.name, door.first, door.count));
+  }
   row("result hash", hashText(hashResult(cells)));
   row("cells", fmt::format("{} of {} baked", cells.size(), pvs.planned.size()));
+  for (const CellSummary& cell : cells) {
+    if (cell.open_stats) row("opened", fmt::format("{}: {} more triangles", cell.cell.name, cell.open_added));
+  }
   std::fputs(("\n" + cellTable(cells, pvs.triangle_count)).c_str(), stdout);
 }
 
-void runInfo(const std::filesystem::path& file, bool repair) {
+void runInfo(const std::filesystem::path& file, bool repair, bool flatten) {
   if (isPvs(file)) {
     showPvs(file);
   } else if (lowerExtension(file) == ".json") {
     showCells(file);
   } else {
-    showScene(file, repair);
+    showScene(file, repair, flatten);
   }
 }
 
@@ -126,7 +145,9 @@ void addInfoCommand(CLI::App& app) {
   const auto repair = std::make_shared<bool>(false);
   command->add_option("file", *file, "scene, cells file, .pvs or .pvs.part")->required()->type_name("FILE");
   command->add_flag("--repair", *repair, "drop a scene's broken triangles instead of refusing it");
-  command->callback([file, repair] { runInfo(*file, *repair); });
+  const auto flatten = std::make_shared<bool>(false);
+  command->add_flag("--flatten", *flatten, "write out a scene's instances");
+  command->callback([file, repair, flatten] { runInfo(*file, *repair, *flatten); });
 }
 
 }  // namespace sightline

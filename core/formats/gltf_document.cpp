@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -139,18 +140,6 @@ GltfAccessor readAccessor(const JsonObject& object, size_t views) {
   return accessor;
 }
 
-std::vector<GltfMaterial> readMaterials(const JsonObject& document) {
-  std::vector<GltfMaterial> materials;
-  for (const JsonObject& object : document.objects("materials")) {
-    const std::string mode = object.text("alphaMode").value_or("OPAQUE");
-    const auto transmission = extensionOf(object, "KHR_materials_transmission");
-    // A texture only takes some of the factor away, which is 0 unless the file says otherwise.
-    const bool glass = transmission && transmission->real("transmissionFactor").value_or(0.0) > 0.0;
-    materials.push_back({mode == "MASK" || mode == "BLEND", glass, object.boolean("doubleSided", false)});
-  }
-  return materials;
-}
-
 /// JOINTS_n and WEIGHTS_n for n = 0, 1, ...
 void readInfluences(const JsonObject& attributes, size_t accessors, GltfPrimitive& primitive) {
   for (size_t set = 0;; ++set) {
@@ -172,6 +161,10 @@ GltfPrimitive readPrimitive(const JsonObject& object, size_t accessors,
   if (primitive.mode > 6) object.fail("mode", "expected 0 to 6");
   const auto material = object.index("material", materials.size());
   if (material) primitive.material = materials[*material];
+  if (primitive.material.texture) {
+    const std::string uv = fmt::format("TEXCOORD_{}", primitive.material.texture->uv_set);
+    primitive.mask_uv = attributes.index(uv.c_str(), accessors);
+  }
   for (const JsonObject& target : object.objects("targets")) {
     primitive.targets.push_back(target.index("POSITION", accessors));
   }
@@ -297,6 +290,9 @@ GltfDocument readGltfDocument(const nlohmann::json& root, const std::string& fil
     result.accessors.push_back(readAccessor(object, result.views.size()));
   }
   const std::vector<GltfMaterial> materials = readMaterials(document);
+  if (std::ranges::any_of(materials, [](const GltfMaterial& m) { return m.texture && m.texture->image; })) {
+    result.images = readImages(document, result.views.size());
+  }
   for (const JsonObject& object : document.objects("meshes")) {
     result.meshes.push_back(readMesh(object, result.accessors.size(), materials));
   }

@@ -22,12 +22,17 @@ using nlohmann::json;
 BakeReport exampleReport() {
   BakeReport report;
   report.version = "1.2.3";
-  report.scene = {"room.obj", 0xabcdef, 1000, 700, 3, 1, 2, 4, 6, 5, 7, {"far off"}};
+  report.scene = {"room.obj", 0xabcdef, 1000, 700, 3, 1, 2, 4, 6, 5, 7, 0, {}, {"far off"}};
   report.baked_on = "cpu";
   report.device = DeviceInfo{"cpu", "host", "built in", "8-wide", "", 5};
   report.tree = TreeSummary{0.5, 12.5, 9, 10, 20, 1100, 9000};
   report.set = "array";
   report.cells = summarize(examplePvs());
+  report.cells[0].open_stats = report.cells[0].stats;
+  report.cells[0].open_added = 3;
+  report.doors = {{"door", 10, 2}};
+  report.see_through = {{"pane", 20, 2}};
+  report.leaks = {Leaks{0.5f, 7, 300, {1, 2, 3}, 1000, 0.25}, {}};
   report.warnings = {{{CellVerdict::kMeetsTriangles, "meets 12 triangles", 12}}, {}, {}};
   report.planned_cells = 3;
   report.resumed_cells = 1;
@@ -109,6 +114,20 @@ TEST(CellTable, NamesTheVerdicts) {
   EXPECT_EQ(cellTable(cells, 1000).find("warning"), std::string::npos);
 }
 
+TEST(Report, TellsOfLeaks) {
+  EXPECT_EQ(leaksText({}), "");
+  EXPECT_EQ(
+      leaksText({0.005f, 7, 300, {1, 2.5, -3}, 1000, 0.25}),
+      "7 triangles of the set are seen only through gaps narrower than 0.005, triangle 300 through one at "
+      "(1, 2.5, -3); --smallest-hole 0.005 closes them");
+  const json text = json::parse(reportJson(exampleReport()));
+  EXPECT_EQ(text["cells"][0]["leaks"]["triangles"], 7);
+  EXPECT_EQ(text["cells"][0]["open"]["added"], 3);
+  EXPECT_TRUE(text["cells"][1]["leaks"].is_null());
+  EXPECT_FALSE(text["cells"][1].contains("open"));
+  EXPECT_EQ(text["features"]["doors"][0]["name"], "door");
+}
+
 TEST(Report, WithoutADeviceItSaysNull) {
   BakeReport report = exampleReport();
   report.device.reset();
@@ -155,12 +174,16 @@ TEST(Report, WarnsOfMaterialsInOneLineAndPassesOnWhatLoadingSaid) {
   EXPECT_EQ(sceneWarnings(scene), (std::vector<std::string>{"far away"}));
   scene.alpha = 3;
   scene.glass = 2;
+  scene.opaque_masks = 1;
   scene.single_sided = 4;
+  EXPECT_EQ(
+      sceneWarnings(scene),
+      (std::vector<std::string>{
+          "1 triangles with masks are traced as opaque; 4 single-sided triangles are traced as two-sided",
+          "far away"}));
+  scene.surfaces.front_only = 4;
   EXPECT_EQ(sceneWarnings(scene),
-            (std::vector<std::string>{
-                "3 triangles with alpha are traced as opaque; 2 triangles of glass are traced as "
-                "opaque; 4 single-sided triangles are traced as two-sided",
-                "far away"}));
+            (std::vector<std::string>{"1 triangles with masks are traced as opaque", "far away"}));
 }
 
 Scene threeObjects() {

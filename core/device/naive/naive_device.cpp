@@ -9,6 +9,7 @@
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
 #include "core/shared/set.h"
+#include "core/trace/narrow_gap.h"
 
 namespace sightline {
 namespace {
@@ -28,7 +29,8 @@ class NaiveDevice final : public Device {
   }
 
  public:
-  NaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) : inner_(std::move(inner)), scene_(scene) {}
+  NaiveDevice(std::unique_ptr<Device> inner, const Scene& scene, float smallest_hole)
+      : inner_(std::move(inner)), scene_(scene), smallest_hole_(smallest_hole) {}
 
   DeviceInfo info() const override {
     DeviceInfo info = inner_->info();
@@ -49,7 +51,7 @@ class NaiveDevice final : public Device {
   void traceRandom(const RandomSegment& segment) override {
     trace(
         slotCount(segment), [&] { return slotRays(segment, params_.shifts); },
-        [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
+        [&](const BatchRay& ray, const Hit&, std::span<const uint32_t> seen) { insert(seen, ray); });
   }
 
   BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
@@ -60,8 +62,8 @@ class NaiveDevice final : public Device {
     const BorderRays batch(scene_, pending, starts, params_);
     std::vector<uint32_t> border_hits(starts.back(), isGvs(params_) ? kNotTraced : kNoTriangle);
     std::vector<uint8_t> is_discontinuity(starts.back(), 0);
-    const auto take = [&](const BatchRay& ray, const Hit& hit) {
-      insert(hit.triangle, ray);
+    const auto take = [&](const BatchRay& ray, const Hit& hit, std::span<const uint32_t> seen) {
+      insert(seen, ray);
       const uint32_t index = ray.index - 1;
       border_hits[index] = hit.triangle;
       if (!listing) return;
@@ -91,7 +93,7 @@ class NaiveDevice final : public Device {
   void traceReverse(uint32_t first, uint32_t count) override {
     trace(
         uint64_t(count) * reverseRayCount(params_), [&] { return reverseRays(first); },
-        [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
+        [&](const BatchRay& ray, const Hit&, std::span<const uint32_t> seen) { insert(seen, ray); });
   }
 
   uint32_t collect(uint32_t stage) override {
@@ -108,7 +110,7 @@ class NaiveDevice final : public Device {
   }
 
   void insertContained(std::span<const uint32_t> triangles) override {
-    for (const uint32_t triangle : triangles) insert(triangle, {noRay(), 1});
+    insert(triangles, {noRay(), 1});
     collect(kStageContained);
   }
 
@@ -116,9 +118,11 @@ class NaiveDevice final : public Device {
     uint64_t missing = 0;
     trace(
         slotCount(segment), [&] { return slotRays(segment, shifts); },
-        [&](const BatchRay&, const Hit& hit) {
-          missing += hit.triangle != kNoTriangle && !set_.contains(hit.triangle) ? 1 : 0;
-        });
+        [&](const BatchRay&, const Hit&, std::span<const uint32_t> seen) {
+          missing +=
+              std::ranges::any_of(seen, [&](uint32_t triangle) { return !set_.contains(triangle); }) ? 1 : 0;
+        },
+        EachCandidate::kTested);
     return missing;
   }
 
@@ -131,6 +135,9 @@ class NaiveDevice final : public Device {
   std::vector<PvsEntry> readPvs() override { return entries_; }
 
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override { inner_->traceRays(rays, hits); }
+  std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
+    return inner_->traceGlass(rays, hits);
+  }
   void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
                   std::span<uint32_t> triangles) override {
     inner_->traceViews(views, resolution, triangles);
@@ -151,8 +158,11 @@ class NaiveDevice final : public Device {
     return {begin, begin + std::min<ptrdiff_t>(most, entries_.end() - begin)};
   }
 
+  void insert(std::span<const uint32_t> triangles, const BatchRay& ray) {
+    for (const uint32_t triangle : triangles) insert(triangle, ray);
+  }
+
   void insert(uint32_t triangle, const BatchRay& ray) {
-    if (triangle == kNoTriangle) return;
     const auto [slot, is_new] = set_.try_emplace(triangle, Found{ray.index, entries_.size()});
     if (is_new) {
       entries_.push_back(entryOf(triangle, ray.ray, 0));
@@ -162,9 +172,23 @@ class NaiveDevice final : public Device {
     }
   }
 
+  /// A triangle that a ray of the chunk sees.
+  struct Sighting {
+    uint32_t ray;
+    Hit hit;
+    bool ends_ray;  ///< else it is glass
+    bool counts = true;
+  };
+
+  /// Whether all that would change the set is tested for gaps, or of each triangle no more than it takes to
+  /// find the first ray that has room.
+  enum class EachCandidate { kTested, kUntilOneCounts };
+
   /// Traces the rays 0 .. count - 1 of generators that makeGenerator() returns, and hands those that have a
-  /// direction with their hits to take(ray, hit), in order.
-  void trace(uint64_t count, auto&& makeGenerator, auto&& take) {
+  /// direction to take(ray, hit, seen), in order. seen: the triangles that they see, that of the hit first.
+  /// Where a gap pinches the ray, its hit is what stands nearer beside it, and not seen.
+  void trace(uint64_t count, auto&& makeGenerator, auto&& take,
+             EachCandidate candidates = EachCandidate::kUntilOneCounts) {
     for (uint64_t first = 0; first < count; first += kChunk) {
       const auto size = static_cast<size_t>(std::min<uint64_t>(kChunk, count - first));
       batch_.resize(size);
@@ -178,16 +202,108 @@ class NaiveDevice final : public Device {
         }
       });
       inner_->traceRays(rays_, hits_);
+      listSightings();
+      if (smallest_hole_ > 0) dropPinched(candidates);
+      auto sighting = sightings_.begin();
+      std::vector<uint32_t> seen;
       for (size_t i = 0; i < size; ++i) {
+        seen.clear();
+        for (; sighting != sightings_.end() && sighting->ray == i; ++sighting) {
+          if (sighting->counts) seen.push_back(sighting->hit.triangle);
+        }
         if (!hasDirection(rays_[i])) continue;
         ++rays_traced_;
-        take(batch_[i], hits_[i]);
+        take(batch_[i], hits_[i], seen);
       }
+    }
+  }
+
+  /// What the rays of the chunk see: ray by ray, what ends it first.
+  void listSightings() {
+    const std::vector<SeenThrough> glass = inner_->traceGlass(rays_, hits_);
+    auto through = glass.begin();
+    sightings_.clear();
+    for (uint32_t i = 0; i < hits_.size(); ++i) {
+      if (hits_[i].triangle != kNoTriangle) sightings_.push_back({i, hits_[i], true});
+      for (; through != glass.end() && through->ray == i; ++through) {
+        sightings_.push_back({i, {0, through->triangle}, false});
+      }
+    }
+  }
+
+  /// Sightings that would change the set, by triangle, of each in ascending index of their rays. Distances of
+  /// glass, which only gaps ask for, are filled in.
+  std::vector<uint32_t> listCandidates() {
+    std::vector<uint32_t> candidates;
+    for (uint32_t i = 0; i < sightings_.size(); ++i) {
+      Sighting& s = sightings_[i];
+      const auto found = set_.find(s.hit.triangle);
+      if (found != set_.end() && batch_[s.ray].index >= found->second.index) continue;
+      if (!s.ends_ray) {
+        const Corners c = cornersOf(scene_, s.hit.triangle);
+        s.hit.t = intersectTriangle(shearRay(rays_[s.ray]), c.a, c.b, c.c);
+      }
+      candidates.push_back(i);
+    }
+    std::sort(candidates.begin(), candidates.end(), [&](uint32_t a, uint32_t b) {
+      const Sighting &x = sightings_[a], &y = sightings_[b];
+      return x.hit.triangle != y.hit.triangle ? x.hit.triangle < y.hit.triangle
+                                              : batch_[x.ray].index < batch_[y.ray].index;
+    });
+    return candidates;
+  }
+
+  /// Some of listCandidates, all of one triangle.
+  struct CandidateRun {
+    uint32_t next, end;
+  };
+  std::vector<CandidateRun> runsOf(const std::vector<uint32_t>& candidates) const {
+    std::vector<CandidateRun> runs;
+    const auto triangle = [&](uint32_t i) { return sightings_[candidates[i]].hit.triangle; };
+    for (uint32_t i = 0; i < candidates.size(); ++i) {
+      if (i == 0 || triangle(i) != triangle(i - 1)) runs.push_back({i, i});
+      runs.back().end = i + 1;
+    }
+    return runs;
+  }
+
+  /// Tests the chunk's candidates for gaps: of each triangle the first, then the next two, the next four, ...
+  /// until one counts.
+  void dropPinched(EachCandidate tested) {
+    const std::vector<uint32_t> candidates = listCandidates();
+    std::vector<CandidateRun> runs = runsOf(candidates);
+    for (uint32_t most = tested == EachCandidate::kTested ? ~0u : 1; !runs.empty(); most *= 2) {
+      std::vector<Ray> rays;
+      std::vector<Hit> hits;
+      const auto endOf = [&](const CandidateRun& run) {
+        return run.end - run.next < most ? run.end : run.next + most;
+      };
+      for (const CandidateRun& run : runs) {
+        for (uint32_t i = run.next; i < endOf(run); ++i) {
+          rays.push_back(rays_[sightings_[candidates[i]].ray]);
+          hits.push_back(sightings_[candidates[i]].hit);
+        }
+      }
+      std::vector<Pinch> pinches;
+      rays_traced_ += findPinched(*inner_, scene_, smallest_hole_, rays, hits, pinches);
+      size_t at = 0;
+      std::erase_if(runs, [&](CandidateRun& run) {
+        bool any_counts = false;
+        for (const uint32_t end = endOf(run); run.next < end; ++run.next, ++at) {
+          Sighting& sighting = sightings_[candidates[run.next]];
+          any_counts = any_counts || !pinches[at].pinched;
+          if (!pinches[at].pinched) continue;
+          sighting.counts = false;
+          if (sighting.ends_ray) hits_[sighting.ray] = pinches[at].nearer;
+        }
+        return run.next == run.end || any_counts;
+      });
     }
   }
 
   std::unique_ptr<Device> inner_;
   const Scene& scene_;
+  float smallest_hole_;
   std::vector<Face> faces_;
   StageParams params_{};
   std::unordered_map<uint32_t, Found> set_;
@@ -199,12 +315,14 @@ class NaiveDevice final : public Device {
   std::vector<BatchRay> batch_;  ///< of a chunk
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
+  std::vector<Sighting> sightings_;
 };
 
 }  // namespace
 
-std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) {
-  return std::make_unique<NaiveDevice>(std::move(inner), scene);
+std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene,
+                                        float smallest_hole) {
+  return std::make_unique<NaiveDevice>(std::move(inner), scene, smallest_hole);
 }
 
 }  // namespace sightline
