@@ -39,8 +39,8 @@ constexpr uint32_t kGlassEvery = 16;
 class Forest {
  public:
   explicit Forest(uint64_t triangles) {
-    // Leaves so large that a ray passes some ten of them before it meets one.
-    const float size = 0.6f / std::sqrt(std::cbrt(float(triangles)) * 10);
+    // So large that a ray flies through a fifth of the box before it meets one.
+    const float size = std::sqrt(7.2f / float(triangles));
     for (uint64_t i = 0; i < triangles / 2; ++i) {
       const vec3 center = point(), across = (point() * 2.0f - 1.0f) * size,
                  along = (point() * 2.0f - 1.0f) * size;
