@@ -19,6 +19,7 @@ struct BakeOptions {
   std::string set = "auto";  ///< as device_options.set, for the report
   DeviceOptions device_options;
   BakeParams params;
+  std::vector<std::string> doors, see_through;  ///< patterns of names
   bool repair = false, witnesses = false, spatial_splits = false, overwrite = false;
   bool strict_cells = false;              ///< a warning about a cell is an error
   FreeSide free_side = FreeSide::kFront;  ///< of the scene's faces, for the warning of cells in solids
