@@ -34,6 +34,8 @@ struct SceneSummary {
   uint64_t opaque_masks = 0;          ///< triangles whose masks were loaded as opaque
   SurfaceCounts surfaces;             ///< what rays meet that does not simply end them
   std::vector<std::string> warnings;  ///< of loading (Scene)
+  uint64_t instances = 0;             ///< 0: the scene is traced as plain triangles
+  uint64_t stored_triangles = 0;      ///< in the scene and its tree
 };
 SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t hash);
 

@@ -17,6 +17,8 @@ Json toJson(const SceneSummary& scene) {
           {"glass_triangles", scene.glass},
           {"single_sided_triangles", scene.single_sided},
           {"hidden_nodes", scene.hidden_nodes},
+          {"instances", scene.instances},
+          {"stored_triangles", scene.stored_triangles},
           {"surfaces",
            {{"masked_triangles", scene.surfaces.masked},
             {"see_through_triangles", scene.surfaces.glass},

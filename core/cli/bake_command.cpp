@@ -257,7 +257,7 @@ void runBake(const BakeOptions& options) {
                   std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
   const TextOutputs outputs(reports);
-  Scene loaded = loadScene(options.scene, {.repair = options.repair});
+  Scene loaded = loadScene(options.scene, {.repair = options.repair, .flatten = options.flatten});
   SessionOptions session_options = sessionOptions(options, loaded);
   Session session(std::move(loaded), std::move(session_options));
   const Scene& scene = session.scene();
@@ -268,6 +268,10 @@ void runBake(const BakeOptions& options) {
   sayDoors(bake.head().doors);
   say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangleCount(),
                   counted(scene.objects.size(), "object"), counted(bake.head().planned.size(), "cell")));
+  if (scene.hasInstances()) {
+    say(fmt::format("instances: {}; {} triangles are stored (--flatten writes them out)",
+                    scene.instances.size(), scene.triangles.size()));
+  }
   BakeReport report = startReport(options, scene, bake);
 
   int exit_code = 0;

@@ -161,6 +161,10 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
       ->type_name("PATTERN");
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
   command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");
+  command.add_flag(
+      "--flatten", options.flatten,
+      "write out meshes that many nodes show instead of tracing them as instances: the same sets, "
+      "faster rays, more memory");
   command.add_flag("--overwrite", options.overwrite, "replace a bake with other inputs");
   command.add_flag(
       "--strict-cells", options.strict_cells,

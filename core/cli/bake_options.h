@@ -20,7 +20,7 @@ struct BakeOptions {
   DeviceOptions device_options;
   BakeParams params;
   std::vector<std::string> doors, see_through;  ///< patterns of names
-  bool repair = false, witnesses = false, spatial_splits = false, overwrite = false;
+  bool repair = false, flatten = false, witnesses = false, spatial_splits = false, overwrite = false;
   bool strict_cells = false;              ///< a warning about a cell is an error
   FreeSide free_side = FreeSide::kFront;  ///< of the scene's faces, for the warning of cells in solids
 };

@@ -44,11 +44,15 @@ bool isPvs(const std::filesystem::path& file) {
   return std::memcmp(start, kPvsMagic, sizeof(start)) == 0 || extension == ".pvs" || extension == ".part";
 }
 
-void showScene(const std::filesystem::path& file, bool repair) {
-  const Scene scene = loadScene(file, {.repair = repair});
+void showScene(const std::filesystem::path& file, bool repair, bool flatten) {
+  const Scene scene = loadScene(file, {.repair = repair, .flatten = flatten});
   const Bounds bounds = sceneBounds(scene);
   row("scene", file.string());
   row("triangles", std::to_string(scene.triangleCount()));
+  if (scene.hasInstances()) {
+    row("instances", fmt::format("{} of {} meshes; {} triangles are stored", scene.instances.size(),
+                                 scene.meshes.size(), scene.triangles.size()));
+  }
   row("vertices", std::to_string(scene.vertexCount()));
   row("bounds", point(bounds.low) + " to " + point(bounds.high));
   row("degenerate",
@@ -123,13 +127,13 @@ void showPvs(const std::filesystem::path& file) {
   std::fputs(("\n" + cellTable(cells, pvs.triangle_count)).c_str(), stdout);
 }
 
-void runInfo(const std::filesystem::path& file, bool repair) {
+void runInfo(const std::filesystem::path& file, bool repair, bool flatten) {
   if (isPvs(file)) {
     showPvs(file);
   } else if (lowerExtension(file) == ".json") {
     showCells(file);
   } else {
-    showScene(file, repair);
+    showScene(file, repair, flatten);
   }
 }
 
@@ -141,7 +145,9 @@ void addInfoCommand(CLI::App& app) {
   const auto repair = std::make_shared<bool>(false);
   command->add_option("file", *file, "scene, cells file, .pvs or .pvs.part")->required()->type_name("FILE");
   command->add_flag("--repair", *repair, "drop a scene's broken triangles instead of refusing it");
-  command->callback([file, repair] { runInfo(*file, *repair); });
+  const auto flatten = std::make_shared<bool>(false);
+  command->add_flag("--flatten", *flatten, "write out a scene's instances");
+  command->callback([file, repair, flatten] { runInfo(*file, *repair, *flatten); });
 }
 
 }  // namespace sightline

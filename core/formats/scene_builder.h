@@ -34,7 +34,8 @@ class SceneBuilder {
  public:
   using Place = std::function<std::string()>;
 
-  explicit SceneBuilder(const SceneLoadOptions& options) : repair_(options.repair), faces_(options.faces) {}
+  explicit SceneBuilder(const SceneLoadOptions& options)
+      : repair_(options.repair), flatten_(options.flatten), faces_(options.faces) {}
 
   /// Adds a vertex; `full` is the position as precise as the file has it. Throws Error for a non-finite
   /// position, or, to repair, marks the vertex: its triangles are dropped.
@@ -71,7 +72,18 @@ class SceneBuilder {
   void countHiddenNodes(uint64_t nodes) { scene_.hidden_nodes += nodes; }
   /// What it names of the file is cleaned (cleanName): reports take UTF-8 only.
   void warn(std::string_view line) { scene_.warnings.push_back(cleanName(line)); }
-  uint64_t triangleCount() const { return scene_.triangles.size(); }
+  uint64_t triangleCount() const { return scene_.triangles.size() + placed_; }
+
+  /// Adds a mesh for instances; indices count within its positions. Returns its number.
+  uint32_t addMesh(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles);
+
+  /// Places a mesh (canPlace): its triangles come next, and are told to the objects that begin by
+  /// countPlaced.
+  void place(uint32_t mesh, const Placement& place);
+  void countPlaced(uint64_t triangles) { placed_ += triangles; }
+
+  /// What there is, for a mesh: no checks, no objects.
+  Scene takeMesh() { return std::move(scene_); }
 
   /// Room for so many more, to avoid copies.
   void reserve(uint64_t positions, uint64_t triangles);
@@ -81,12 +93,18 @@ class SceneBuilder {
   Scene finish(const std::string& file);
 
  private:
+  struct MeshData {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+  };
+
+  void joinMeshes();
   void addTriangle(const glm::uvec3& triangle, const Place& place);
   bool usable(std::span<const int64_t> corners, const VertexRange& vertices, const Place& place) const;
   bool isBadVertex(int64_t index) const;
   void closeObject();
 
-  bool repair_;
+  bool repair_, flatten_;
   bool faces_;
   uint32_t face_ = ~0u;  ///< wraps to 0 with the first; only faces without triangles can be more than 2^32
   Scene scene_;
@@ -98,6 +116,8 @@ class SceneBuilder {
   std::vector<glm::vec3> corners_;  ///< of the polygon in work
   std::vector<glm::uvec3> cut_;
   uint64_t cut_tests_left_ = kMaxCutTests;
+  std::vector<MeshData> meshes_;
+  uint64_t placed_ = 0;  ///< triangles of instances
 };
 
 }  // namespace sightline
