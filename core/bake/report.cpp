@@ -59,7 +59,8 @@ SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t has
           scene.glass_triangles,
           scene.single_sided_triangles,
           scene.hidden_nodes,
-          scene.warnings};
+          scene.warnings,
+          scene.offset};
 }
 
 std::vector<CellWarning> warningsOf(const BakeReport& report, size_t index) {
@@ -91,7 +92,8 @@ std::string reportJson(const BakeReport& report) {
                       {{"set", report.set.empty() ? Json(nullptr) : Json(report.set)},
                        {"spatial_splits", report.spatial_splits},
                        {"witnesses", report.witnesses},
-                       {"repair", report.repair}}},
+                       {"repair", report.repair},
+                       {"ignored_extensions", report.ignored_extensions}}},
                      {"scene", toJson(report.scene)},
                      {"tree", toJson(report.tree, report.scene.triangles)},
                      {"planned_cells", report.planned_cells},

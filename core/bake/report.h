@@ -30,6 +30,7 @@ struct SceneSummary {
   uint64_t triangles = 0, vertices = 0, objects = 0;
   uint64_t degenerate = 0, repaired = 0, alpha = 0, glass = 0, single_sided = 0, hidden_nodes = 0;
   std::vector<std::string> warnings;  ///< of loading (Scene)
+  glm::dvec3 offset{0.0};             ///< of the scene
 };
 SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t hash);
 
@@ -42,6 +43,7 @@ struct BakeReport {
   std::optional<TreeSummary> tree;   ///< as device
   std::string set;                   ///< "array" or "hash"; empty without a device
   bool spatial_splits = false, witnesses = false, repair = false;
+  std::vector<std::string> ignored_extensions;  ///< as the scene was loaded
   BakeParams params;
   std::vector<CellSummary> cells;                  ///< finished, in order
   std::vector<std::vector<CellWarning>> warnings;  ///< checkCells of all planned cells; empty: not checked

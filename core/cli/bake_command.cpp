@@ -40,7 +40,8 @@ BakeReport startReport(const BakeOptions& options, const Scene& scene, const Bak
   report.scene = summarize(scene, bake.head().scene_name, bake.head().scene_hash);
   report.spatial_splits = options.spatial_splits;
   report.witnesses = options.witnesses;
-  report.repair = options.repair;
+  report.repair = options.load.repair;
+  report.ignored_extensions = options.load.ignored_extensions;
   report.params = options.params;
   report.planned_cells = bake.head().planned.size();
   report.resumed_cells = bake.resumed();
@@ -237,7 +238,7 @@ void runBake(const BakeOptions& options) {
                   std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
   const TextOutputs outputs(reports);
-  Session session(loadScene(options.scene, {.repair = options.repair}), sessionOptions(options));
+  Session session(loadScene(options.scene, options.load), sessionOptions(options));
   const Scene& scene = session.scene();
   Bake bake(bakeInputs(session, loadCells(options.cells), options.params,
                        options.witnesses ? Witnesses::kKeep : Witnesses::kDrop),

@@ -32,6 +32,7 @@ namespace {
 
 struct CellsArguments {
   std::filesystem::path scene, output;
+  SceneLoadOptions load;
   bool overwrite = false;
   std::string grid;
   std::string origin;
@@ -203,7 +204,7 @@ void run(const CellsArguments& arguments) {
   requireSeparate(std::array{arguments.output}, inputs);
   requireNew(arguments.output, arguments.overwrite);
   const TextOutputs outputs({&arguments.output, 1});
-  const Scene scene = loadScene(arguments.scene);
+  const Scene scene = loadScene(arguments.scene, arguments.load);
   const std::vector<ViewCell> cells =
       arguments.grid.empty() ? placePath(scene, arguments) : placeGrid(scene, arguments);
   outputs.save(cellsText(cells, arguments.output), arguments.output);
@@ -286,6 +287,7 @@ void addCellsCommand(CLI::App& app) {
   command->add_option("--margin", a->margin,
                       "How far boxes keep from triangles; 0: they may touch, and those of the path cut, some "
                       "(default: a hundredth of their smallest extent)");
+  declareLoading(*command, a->load);
   declareGrid(*command, *a);
   declarePath(*command, *a);
   command->footer(kCellsFooter);

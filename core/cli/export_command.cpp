@@ -7,6 +7,7 @@
 #include "core/bake/require_scene.h"
 #include "core/base/error.h"
 #include "core/cli/commands.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/text_outputs.h"
 #include "core/export/export.h"
@@ -23,6 +24,7 @@ namespace {
 struct ExportOptions {
   std::filesystem::path pvs, out, scene;
   std::string cell, format;
+  SceneLoadOptions load;
 };
 
 /// saveScene goes by the extension, so it must say the same as --format.
@@ -51,7 +53,7 @@ void runExport(const ExportOptions& options) {
   const CellPvs& cell = chooseCell(pvs, options.cell, options.pvs);
   std::optional<Scene> scene;
   if (!options.scene.empty()) {
-    scene = loadScene(options.scene);
+    scene = loadScene(options.scene, options.load);
     requireScene(pvs, *scene, options.pvs);
   }
   if (options.format == "ids") outputs.save(idsText(cell), options.out);
@@ -88,6 +90,7 @@ void addExportCommand(CLI::App& app) {
       ->type_name("FILE");
   command->add_option("--scene", options->scene, "the baked scene: for obj and glb, and for json's objects")
       ->type_name("SCENE");
+  declareLoading(*command, options->load, kAsBakeDid);
   command->callback([options] { runExport(*options); });
 }
 

@@ -7,6 +7,7 @@
 #include "core/bake/cell_table.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"
+#include "core/cli/load_options.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
@@ -44,8 +45,8 @@ bool isPvs(const std::filesystem::path& file) {
   return std::memcmp(start, kPvsMagic, sizeof(start)) == 0 || extension == ".pvs" || extension == ".part";
 }
 
-void showScene(const std::filesystem::path& file, bool repair) {
-  const Scene scene = loadScene(file, {.repair = repair});
+void showScene(const std::filesystem::path& file, const SceneLoadOptions& options) {
+  const Scene scene = loadScene(file, options);
   const Bounds bounds = sceneBounds(scene);
   row("scene", file.string());
   row("triangles", std::to_string(scene.triangles.size()));
@@ -53,7 +54,7 @@ void showScene(const std::filesystem::path& file, bool repair) {
   row("bounds", point(bounds.low) + " to " + point(bounds.high));
   row("degenerate",
       fmt::format("{} triangles without area (kept, cannot be seen)", scene.degenerate_triangles));
-  if (repair) row("repaired", fmt::format("{} triangles dropped", scene.repaired_triangles));
+  if (options.repair) row("repaired", fmt::format("{} triangles dropped", scene.repaired_triangles));
   if (scene.alpha_triangles != 0) row("alpha", fmt::format("{} triangles", scene.alpha_triangles));
   if (scene.glass_triangles != 0) row("glass", fmt::format("{} triangles", scene.glass_triangles));
   if (scene.single_sided_triangles != 0) {
@@ -108,13 +109,13 @@ void showPvs(const std::filesystem::path& file) {
   std::fputs(("\n" + cellTable(cells, pvs.triangle_count)).c_str(), stdout);
 }
 
-void runInfo(const std::filesystem::path& file, bool repair) {
+void runInfo(const std::filesystem::path& file, const SceneLoadOptions& options) {
   if (isPvs(file)) {
     showPvs(file);
   } else if (lowerExtension(file) == ".json") {
     showCells(file);
   } else {
-    showScene(file, repair);
+    showScene(file, options);
   }
 }
 
@@ -123,10 +124,10 @@ void runInfo(const std::filesystem::path& file, bool repair) {
 void addInfoCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Say what a scene, cells or .pvs file holds");
   const auto file = std::make_shared<std::filesystem::path>();
-  const auto repair = std::make_shared<bool>(false);
+  const auto options = std::make_shared<SceneLoadOptions>();
   command->add_option("file", *file, "scene, cells file, .pvs or .pvs.part")->required()->type_name("FILE");
-  command->add_flag("--repair", *repair, "drop a scene's broken triangles instead of refusing it");
-  command->callback([file, repair] { runInfo(*file, *repair); });
+  declareLoading(*command, *options, "drop a scene's broken triangles instead of refusing it");
+  command->callback([file, options] { runInfo(*file, *options); });
 }
 
 }  // namespace sightline

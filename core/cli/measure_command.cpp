@@ -17,6 +17,7 @@
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
@@ -42,7 +43,7 @@ struct MeasureCommand {
   MeasureOptions options;
   double max_average = std::numeric_limits<double>::infinity();
   double max_wrong = std::numeric_limits<double>::infinity();
-  bool repair = false;
+  SceneLoadOptions load;
 };
 
 /// How the cells that two files hold differ; empty: not at all.
@@ -187,7 +188,7 @@ void run(const MeasureCommand& command) {
   requireSeparate(reports, inputs);
   const TextOutputs outputs(reports);
   if (!command.pictures.empty()) makeFolder(command.pictures);
-  Session session(loadScene(command.scene, {.repair = command.repair}), {.device = command.device});
+  Session session(loadScene(command.scene, command.load), {.device = command.device});
   const Scene& scene = session.scene();
   const std::vector<PvsFile> files = loadSets(command, scene);
   const std::vector<uint32_t> cells = cellsToMeasure(command, files.front());
@@ -248,7 +249,7 @@ void declareFiles(CLI::App& command, MeasureCommand& options) {
       .add_option("--html", options.html,
                   "write a page with tables, a chart and the pictures, if there are any")
       ->type_name("R.html");
-  command.add_flag("--repair", options.repair, "load the scene as bake --repair did");
+  declareLoading(command, options.load, kAsBakeDid);
 }
 
 void declareMeasure(CLI::App& command, MeasureCommand& options) {

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/formats/load_scene.h"
@@ -30,7 +31,7 @@ struct PictureCommand {
   std::filesystem::path scene, pvs, output;
   std::string cell, view = "outside", device = "opencl", cut = "auto";
   PictureOptions options;
-  bool repair = false;
+  SceneLoadOptions load;
 };
 
 std::string missingList(const Picture& picture) {
@@ -48,7 +49,7 @@ void draw(const PictureCommand& command) {
   requireSeparate(std::array{command.output}, std::array{command.scene, command.pvs});
   const PvsFile pvs = loadFinishedCells(command.pvs);
   const CellPvs& cell = chooseCell(pvs, command.cell, command.pvs);
-  Session session(loadScene(command.scene, {.repair = command.repair}), {.device = command.device});
+  Session session(loadScene(command.scene, command.load), {.device = command.device});
   const Scene& scene = session.scene();
   requireScene(pvs, scene, command.pvs);
   session.open();
@@ -122,7 +123,7 @@ void addPictureCommand(CLI::App& app) {
       ->check(deviceName())
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_flag("--repair", options->repair, "load the scene as bake --repair did");
+  declareLoading(*command, options->load, kAsBakeDid);
   command->callback([options] {
     setCut(options->options, options->cut);
     draw(*options);

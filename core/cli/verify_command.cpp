@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
@@ -25,7 +26,8 @@ struct VerifyCommand {
   VerifyOptions options;
   uint64_t max_disproved = 0;
   double min_proven = 0.9999;
-  bool repair = false, overwrite = false;
+  SceneLoadOptions load;
+  bool overwrite = false;
 };
 
 std::string reportText(const VerifyCommand& command, const PvsFile& pvs,
@@ -82,7 +84,7 @@ void run(const VerifyCommand& command) {
   if (!pvs.has_witnesses) {
     throw Error(fmt::format("{}: has no witnesses; bake it with --witnesses", command.pvs.string()));
   }
-  const Scene scene = loadScene(command.scene, {.repair = command.repair});
+  const Scene scene = loadScene(command.scene, command.load);
   requireScene(pvs, scene, command.pvs);
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   const Judge judge(scene, bvh);
@@ -123,7 +125,7 @@ void addVerifyCommand(CLI::App& app) {
       ->capture_default_str();
   declareRounding(*command, options->options.rounding);
   command->add_flag("--overwrite", options->overwrite, "replace NEW.pvs");
-  command->add_flag("--repair", options->repair, "load the scene as bake --repair did");
+  declareLoading(*command, options->load, kAsBakeDid);
   command->callback([options] { run(*options); });
 }
 
