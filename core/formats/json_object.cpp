@@ -40,7 +40,15 @@ void JsonObject::fail(const std::string& key, const std::string& what) const {
 
 const json* JsonObject::find(const char* key) const {
   const auto found = value_->find(key);
-  return found == value_->end() ? nullptr : &*found;
+  return found == value_->end() || found->is_null() ? nullptr : &*found;
+}
+
+std::vector<std::string> JsonObject::keys() const {
+  std::vector<std::string> names;
+  for (const auto& [key, value] : value_->items()) {
+    if (!value.is_null()) names.push_back(key);
+  }
+  return names;
 }
 
 const json* JsonObject::list(const char* key) const {

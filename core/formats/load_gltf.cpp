@@ -3,10 +3,11 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstring>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/formats/draco_stream.h"
+#include "core/formats/glb_chunks.h"
 #include "core/formats/gltf_data.h"
 #include "core/formats/gltf_document.h"
 #include "core/formats/gltf_tree.h"
@@ -19,60 +20,6 @@
 namespace sightline {
 namespace {
 
-/// The two chunks of a GLB file.
-struct Glb {
-  std::string_view json;
-  std::string_view bin;
-};
-
-uint32_t word(std::string_view bytes, size_t offset) {
-  uint32_t value = 0;
-  std::memcpy(&value, bytes.data() + offset, sizeof(value));
-  return value;
-}
-
-/// The chunk whose header is at `offset`; moves the offset behind it.
-std::pair<uint32_t, std::string_view> takeChunk(std::string_view bytes, size_t& offset,
-                                                const std::string& name) {
-  if (bytes.size() - offset < 8)
-    throw Error(fmt::format("{}: chunk header cut off at byte {}", name, offset));
-  const size_t length = word(bytes, offset);
-  const uint32_t type = word(bytes, offset + 4);
-  offset += 8;
-  if (length > bytes.size() - offset) {
-    throw Error(fmt::format("{}: chunk of {} bytes at byte {} is cut off after {}; is the file truncated?",
-                            name, length, offset, bytes.size() - offset));
-  }
-  offset += length;
-  return {type, bytes.substr(offset - length, length)};
-}
-
-Glb splitGlb(std::string_view bytes, const std::string& name) {
-  constexpr uint32_t kMagic = 0x46546c67;
-  constexpr uint32_t kJson = 0x4e4f534a;
-  constexpr uint32_t kBin = 0x004e4942;
-  if (bytes.size() < 12 || word(bytes, 0) != kMagic) {
-    throw Error(fmt::format("{}: is no GLB file: it does not start with \"glTF\" and a header", name));
-  }
-  if (word(bytes, 4) != 2)
-    throw Error(fmt::format("{}: GLB version {}, only 2 is supported", name, word(bytes, 4)));
-  const size_t length = word(bytes, 8);
-  if (length > bytes.size() || length < 20) {
-    throw Error(fmt::format("{}: the header says {} bytes, the file has {}; is it truncated?", name, length,
-                            bytes.size()));
-  }
-  bytes = bytes.substr(0, length);
-  size_t offset = 12;
-  const auto [type, text] = takeChunk(bytes, offset, name);
-  if (type != kJson) throw Error(fmt::format("{}: the first chunk is not JSON", name));
-  Glb glb{text, {}};
-  while (offset < bytes.size()) {
-    const auto [next_type, next] = takeChunk(bytes, offset, name);
-    if (next_type == kBin && glb.bin.data() == nullptr) glb.bin = next;
-  }
-  return glb;
-}
-
 /// A small file may place a mesh, and a mesh hold an accessor, any number of times. What that may cost is a
 /// number of steps for each of the file's bytes: a step makes a vertex or a triangle. (A forest of 5,000
 /// trees with 50,000 triangles each takes 300 of them.)
@@ -83,17 +30,25 @@ constexpr uint64_t kStepsAnInfluence = 8;  ///< to blend four joints' matrices
 
 class GltfLoader {
  public:
-  GltfLoader(const GltfDocument& document, uint64_t file_bytes, GltfData& data, const std::string& name,
-             const SceneLoadOptions& options)
+  /// Changes the document: what is compressed gets views of its own.
+  GltfLoader(GltfDocument& document, uint64_t file_bytes, GltfData& data, const std::string& name,
+             const SceneLoadOptions& options, const GltfWorld& world)
       : document_(document),
         file_bytes_(file_bytes),
         data_(data),
         name_(name),
-        builder_(options),
-        tree_(readTree(document, name)),
-        vertices_(document, tree_, data, name, builder_) {}
+        world_(world.parent),
+        builder_(options, world.offset),
+        vertices_(document, tree_, data, name, builder_) {
+    world_[3] -= glm::dvec4(world.offset, 0.0);
+  }
 
   Scene load() {
+    tree_ = readTree(document_, data_, name_,
+                     {.world = world_, .repair = builder_.repairs(), .instances = [this](uint64_t count) {
+                        spend(count * kStepsAnObject);
+                      }});
+    decodeDracoMeshes();
     reserve();
     for (const GltfInstance& instance : tree_.instances) {
       const GltfMesh& mesh = document_.meshes[instance.mesh];
@@ -132,6 +87,51 @@ class GltfLoader {
       const uint64_t name_bytes = document_.nodes[instance.node].name.size() + mesh.name.size();
       spend(mesh.primitives.size() * (kStepsAnObject + name_bytes / kNameBytesAStep));
     }
+  }
+
+  void decodeDracoMeshes() {
+    std::vector<bool> done(document_.meshes.size(), false);
+    for (const GltfInstance& instance : tree_.instances) {
+      if (done[instance.mesh]) continue;
+      done[instance.mesh] = true;
+      for (size_t i = 0; i < document_.meshes[instance.mesh].primitives.size(); ++i)
+        decodeDraco(instance.mesh, i);
+    }
+  }
+
+  /// Puts what the primitive's stream holds into the place of the accessors that have no data.
+  void decodeDraco(size_t mesh, size_t index) {
+    const GltfPrimitive& primitive = document_.meshes[mesh].primitives[index];
+    if (!primitive.draco) return;
+    const std::string place = fmt::format(
+        "{}: meshes[{}].primitives[{}].extensions.KHR_draco_mesh_compression", name_, mesh, index);
+    if (!primitive.indices) throw Error(fmt::format("{}: the primitive has no indices", place));
+    std::vector<size_t> accessors;
+    DracoWish wish;
+    for (const auto& [accessor, number] : primitive.draco->attributes) {
+      const GltfAccessor& its = document_.accessors[accessor];
+      if (its.view) continue;  // of a primitive that shares it
+      accessors.push_back(accessor);
+      wish.attributes.push_back({number, its.component, its.width});
+    }
+    const bool wants_indices = !document_.accessors[*primitive.indices].view;
+    if (accessors.empty() && !wants_indices) return;
+    wish.corner_component = document_.accessors[*primitive.indices].component;
+    DracoData decoded = sightline::decodeDraco(data_.view(primitive.draco->view), wish, place);
+    spend(decoded.points + decoded.corners);
+    for (size_t i = 0; i < accessors.size(); ++i) {
+      replace(accessors[i], decoded.points, std::move(decoded.attributes[i]));
+    }
+    if (wants_indices) replace(*primitive.indices, decoded.corners, std::move(decoded.corner_points));
+  }
+
+  void replace(size_t accessor, uint64_t count, std::vector<uint8_t> bytes) {
+    GltfAccessor& its = document_.accessors[accessor];
+    if (its.count != count) ++other_counts_;
+    its.view = data_.addView(document_, std::move(bytes));
+    its.byte_offset = 0;
+    its.count = count;
+    its.sparse.reset();
   }
 
   /// Of sources that were checked, so that no count is larger than its data allows.
@@ -271,6 +271,7 @@ class GltfLoader {
     std::string name = cleanName(document_.nodes[instance.node].name);
     const std::string mesh_name = cleanName(mesh.name);
     if (name.empty()) name = fmt::format("node_{}", instance.node);
+    if (instance.copy) name += fmt::format("#{}", *instance.copy);
     if (!mesh_name.empty() && mesh_name != name) name += "/" + mesh_name;
     if (mesh.primitives.size() > 1) name += fmt::format("/{}", primitive);
     builder_.beginObject(name, name);
@@ -278,9 +279,11 @@ class GltfLoader {
 
   void warn() {
     builder_.countHiddenNodes(tree_.hidden_nodes);
-    if (tree_.hidden_nodes != 0) {
-      builder_.warn(fmt::format("invisible nodes (KHR_node_visibility), left out with all below them: {}",
-                                tree_.hidden_nodes));
+    for (const std::string& warning : document_.warnings) builder_.warn(warning);
+    for (const std::string& warning : tree_.warnings) builder_.warn(warning);
+    if (other_counts_ != 0) {
+      builder_.warn(fmt::format("accessors whose count is not that of their Draco stream, which holds: {}",
+                                other_counts_));
     }
     if (unbound_ != 0) {
       builder_.warn(fmt::format(
@@ -292,34 +295,42 @@ class GltfLoader {
     }
   }
 
-  const GltfDocument& document_;
+  GltfDocument& document_;
   const uint64_t file_bytes_;
   uint64_t steps_ = 0;
   GltfData& data_;
   const std::string& name_;
+  glm::dmat4 world_;  ///< from the document's space to the scene's
   SceneBuilder builder_;
   GltfTree tree_;
   GltfVertices vertices_;
-  uint64_t unbound_ = 0;  ///< primitives of skinned nodes without joints
+  uint64_t other_counts_ = 0;  ///< accessors whose Draco stream has another count
+  uint64_t unbound_ = 0;       ///< primitives of skinned nodes without joints
 };
-
-Scene loadDocument(std::string_view text, std::string_view bin, const std::filesystem::path& file,
-                   const SceneLoadOptions& options) {
-  const std::string name = file.string();
-  const GltfDocument document = readGltfDocument(parseJson(text, name), name);
-  GltfData data(document, bin, file);
-  return GltfLoader(document, text.size() + bin.size(), data, name, options).load();
-}
 
 }  // namespace
 
-Scene loadGltf(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
-  return loadDocument(bytes.view(), {}, file, options);
+Scene loadGltfDocument(const GlbChunks& chunks, const std::filesystem::path& file,
+                       const SceneLoadOptions& options, const GltfWorld& world) {
+  const std::string name = file.string();
+  uint64_t words = 0;
+  GltfDocument document =
+      readGltfDocument(parseJsonWithWords(chunks.json, name, words), name, options.ignored_extensions);
+  if (words != 0)
+    document.warnings.push_back(fmt::format("words in the place of numbers (NaN), not read: {}", words));
+  document.warnings.insert(document.warnings.end(), chunks.warnings.begin(), chunks.warnings.end());
+  GltfData data(document, chunks.bin, file, options.allow_external);
+  return GltfLoader(document, chunks.json.size() + chunks.bin.size(), data, name, options, world).load();
 }
 
-Scene loadGlb(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
-  const Glb glb = splitGlb(bytes.view(), file.string());
-  return loadDocument(glb.json, glb.bin, file, options);
+Scene loadGltf(std::string_view bytes, const std::filesystem::path& file, const SceneLoadOptions& options,
+               const glm::dvec3& offset) {
+  return loadGltfDocument({bytes, {}, {}}, file, options, {.offset = offset});
+}
+
+Scene loadGlb(std::string_view bytes, const std::filesystem::path& file, const SceneLoadOptions& options,
+              const glm::dvec3& offset) {
+  return loadGltfDocument(splitGlb(bytes, file.string()), file, options, {.offset = offset});
 }
 
 }  // namespace sightline

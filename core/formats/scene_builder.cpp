@@ -75,6 +75,22 @@ std::string cleanName(std::string_view name) {
 }
 
 void SceneBuilder::addPosition(const glm::vec3& position, const glm::dvec3& full, const Place& place) {
+  if (scene_.offset == glm::dvec3(0.0)) {
+    add(position, full, place);
+  } else {
+    addPlaced(full - scene_.offset, place);
+  }
+}
+
+void SceneBuilder::addPlaced(const glm::dvec3& position, const Place& place) {
+  if (scene_.offset != glm::dvec3(0.0)) {
+    const glm::dvec3 in_file = position + scene_.offset;
+    file_has_floats_ = file_has_floats_ && in_file == glm::dvec3(glm::vec3(in_file));
+  }
+  add(glm::vec3(position), position, place);
+}
+
+void SceneBuilder::add(const glm::vec3& position, const glm::dvec3& full, const Place& place) {
   if (scene_.positions.size() >= kMaxElements) throw Error(fmt::format("{}: too many vertices", place()));
   if (isInRange(position)) {
     const glm::vec3 remainder(full - glm::dvec3(position));
@@ -85,20 +101,14 @@ void SceneBuilder::addPosition(const glm::vec3& position, const glm::dvec3& full
     scene_.positions.push_back(position);
     return;
   }
-  if (!repair_) {
-    const bool finite = std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
-    throw Error(fmt::format(
-        "{}: vertex ({}, {}, {}) is {}; --repair drops its triangles", place(), position.x, position.y,
-        position.z,
-        finite ? "farther than 2^40 from the origin, too far to trace: scale the scene" : "not finite"));
-  }
-  bad_vertices_.push_back(uint32_t(scene_.positions.size()));
+  bad_vertices_.emplace_back(uint32_t(scene_.positions.size()), position);
   scene_.positions.emplace_back(0.0f);
 }
 
-bool SceneBuilder::isBadVertex(int64_t index) const {
-  return !bad_vertices_.empty() &&
-         std::binary_search(bad_vertices_.begin(), bad_vertices_.end(), uint32_t(index));
+const glm::vec3* SceneBuilder::badVertex(int64_t index) const {
+  const auto found = std::lower_bound(bad_vertices_.begin(), bad_vertices_.end(), index,
+                                      [](const auto& bad, int64_t wanted) { return bad.first < wanted; });
+  return found == bad_vertices_.end() || found->first != index ? nullptr : &found->second;
 }
 
 void SceneBuilder::closeObject() {
@@ -122,8 +132,17 @@ bool SceneBuilder::usable(std::span<const int64_t> corners, const VertexRange& v
                             corners.size()));
   }
   for (const int64_t corner : corners) {
-    if (corner >= 0 && corner < vertices.count && !isBadVertex(vertices.first + corner)) continue;
+    const bool in_range = corner >= 0 && corner < vertices.count;
+    const glm::vec3* bad = in_range ? badVertex(vertices.first + corner) : nullptr;
+    if (in_range && bad == nullptr) continue;
     if (repair_) return false;
+    if (bad != nullptr) {
+      const bool finite = std::isfinite(bad->x) && std::isfinite(bad->y) && std::isfinite(bad->z);
+      throw Error(fmt::format(
+          "{}: vertex {} at ({}, {}, {}) is {}; --repair drops its triangles", place(),
+          corner + vertices.number_of_first, bad->x, bad->y, bad->z,
+          finite ? "farther than 2^40 from the origin, too far to trace: scale the scene" : "not finite"));
+    }
     if (vertices.count == 0) throw Error(fmt::format("{}: face without any vertex in the file", place()));
     throw Error(fmt::format("{}: vertex index {} is out of range {}..{}; --repair drops the face", place(),
                             corner + vertices.number_of_first, vertices.number_of_first,
@@ -184,7 +203,11 @@ Scene SceneBuilder::finish(const std::string& file) {
                             longest, kSmallestExtent));
   }
   scene_.degenerate_triangles = countDegenerate(scene_);
-  const std::string lost = precisionWarning(scene_, remainders_);
+  if (scene_.offset == glm::dvec3(0.0)) {
+    const glm::dvec3 offset = neededOffset(scene_, remainders_);
+    if (offset != glm::dvec3(0.0)) throw NeedsOffset(offset);
+  }
+  const std::string lost = precisionWarning(scene_, remainders_, file_has_floats_);
   if (!lost.empty()) warn(lost);
   return std::move(scene_);
 }

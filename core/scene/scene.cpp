@@ -22,6 +22,9 @@ uint64_t hashScene(const Scene& scene) {
   XXH3_64bits_update(state.get(), counts.data(), sizeof(counts));
   XXH3_64bits_update(state.get(), scene.positions.data(), scene.positions.size() * sizeof(glm::vec3));
   XXH3_64bits_update(state.get(), scene.triangles.data(), scene.triangles.size() * sizeof(glm::uvec3));
+  if (scene.offset != glm::dvec3(0.0)) {
+    XXH3_64bits_update(state.get(), &scene.offset, sizeof(scene.offset));
+  }
   return XXH3_64bits_digest(state.get());
 }
 

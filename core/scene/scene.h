@@ -30,6 +30,9 @@ struct Scene {
   std::vector<glm::vec3> positions;   ///< world space, y up by custom; units are the file's
   std::vector<glm::uvec3> triangles;  ///< indices into positions
   std::vector<SceneObject> objects;
+  /// Whole numbers that were taken off the file's coordinates, where floats would not have held those: a
+  /// place in the file is positions[i] + offset. View cells are less it too (CellsInScene).
+  glm::dvec3 offset{0.0};
   uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
   uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or vertex
   uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND: traced as opaque
@@ -41,7 +44,7 @@ struct Scene {
                                         ///< roughly
 };
 
-/// Hash of positions and triangles (XXH3, 64 bit): what a PVS depends on.
+/// Hash of positions, triangles and, if there is one, offset (XXH3, 64 bit): what a PVS depends on.
 uint64_t hashScene(const Scene& scene);
 
 /// Axis-aligned bounds of the vertices that triangles use.
