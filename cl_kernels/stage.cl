@@ -1,5 +1,4 @@
-// What every kernel of a bake sees: the scene, the launch and all buffers of the stages. All kernels have the
-// same parameters; the host binds those that a stage uses.
+// What the kernels of a bake see: the scene, the launch and the buffers of the stages that each of them names.
 #ifndef SL_STAGE_CL
 #define SL_STAGE_CL
 #include "cl_kernels/trace.cl"
@@ -9,9 +8,9 @@
 #include "core/shared/set.h"
 #include "core/shared/stage_launch.h"
 
-#define SL_BUFFER_ARG(type, name) , __global type *name
+#define SL_BUFFER_ITEM(type, name) typedef type name##_item;
+SL_STAGE_BUFFERS(SL_BUFFER_ITEM)
 #define SL_BUFFER_MEMBER(type, name) __global type* name;
-#define SL_BUFFER_PACK(type, name) stage.name = name;
 
 typedef struct StageRef {
   SceneRef scene;
@@ -19,14 +18,28 @@ typedef struct StageRef {
   SL_STAGE_BUFFERS(SL_BUFFER_MEMBER)
 } StageRef;
 
-/// Parameters of a kernel, and the StageRef `stage` made of them. The host passes nodes, triangles, reach and
-/// launch, then the buffers (core/device/opencl/opencl_stages.cpp).
-#define SL_STAGE_ARGS SL_SCENE_ARGS, StageLaunch launch SL_STAGE_BUFFERS(SL_BUFFER_ARG)
-#define SL_STAGE_PACK           \
-  StageRef stage;               \
-  stage.scene = SL_SCENE_PACK;  \
-  stage.launch = launch;        \
-  SL_STAGE_BUFFERS(SL_BUFFER_PACK)
+/// Defines a kernel that calls of_item for each work item below launch.item_count. buffers: X(name) for each buffer
+/// that it reads or writes; the others are not to be touched. The host finds them by the names of the parameters
+/// (core/device/opencl/opencl_stages.cpp), after nodes, triangles, reach and launch: what a launch costs grows with
+/// the number of its buffers.
+#define SL_STAGE_KERNEL(name, of_item, buffers)                           \
+  __kernel void name(SL_STAGE_ARGS(buffers)) {                            \
+    SL_STAGE_PACK(buffers)                                                \
+    const uint item = (uint)get_global_id(0);                             \
+    if (item < launch.item_count) of_item(&stage, item);                  \
+  }
+#define SL_STAGE_ARGS(buffers) SL_SCENE_ARGS, StageLaunch launch buffers(SL_BUFFER_ARG)
+#define SL_BUFFER_ARG(name) , __global name##_item *name
+/// The StageRef `stage` of the arguments.
+#define SL_STAGE_PACK(buffers)    \
+  StageRef stage;                 \
+  stage.scene = SL_SCENE_PACK;    \
+  stage.launch = launch;          \
+  buffers(SL_BUFFER_PACK)
+#define SL_BUFFER_PACK(name) stage.name = name;
+
+/// What insertHit needs.
+#define SL_SET_BUFFERS(X) X(keys) X(winner) X(fresh) X(counters)
 
 static inline SetRef setOf(const StageRef* stage) {
   SetRef set;

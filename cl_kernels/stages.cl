@@ -1,8 +1,9 @@
 // The sampling stages: generate SL_PACKET rays a work item, trace them together, insert what they hit.
 #include "cl_kernels/stage.cl"
 
-__kernel void traceRandom(SL_STAGE_ARGS) {
-  SL_STAGE_PACK
+#define SL_TRACE_RANDOM(X) SL_SET_BUFFERS(X) X(faces)
+__kernel void traceRandom(SL_STAGE_ARGS(SL_TRACE_RANDOM)) {
+  SL_STAGE_PACK(SL_TRACE_RANDOM)
   const SetRef set = setOf(&stage);
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   Hit met[SL_PACKET];
@@ -16,9 +17,10 @@ __kernel void traceRandom(SL_STAGE_ARGS) {
   countRays(&stage, traced);
 }
 
+#define SL_COUNT_MISSING(X) SL_SET_BUFFERS(X) X(faces)
 /// As traceRandom, but only counts the hits outside the set.
-__kernel void countMissing(SL_STAGE_ARGS) {
-  SL_STAGE_PACK
+__kernel void countMissing(SL_STAGE_ARGS(SL_COUNT_MISSING)) {
+  SL_STAGE_PACK(SL_COUNT_MISSING)
   const SetRef set = setOf(&stage);
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   Hit met[SL_PACKET];
@@ -35,10 +37,11 @@ __kernel void countMissing(SL_STAGE_ARGS) {
   countRays(&stage, traced);
 }
 
+#define SL_TRACE_BORDER(X) SL_SET_BUFFERS(X) X(entries) X(border_starts) X(border_edges) X(border_hits) X(bits)
 /// All border rays of the batch; notes what each hit and, a bit a ray, whether it met a discontinuity. Those
 /// without direction hit nothing and are not counted.
-__kernel void traceBorder(SL_STAGE_ARGS) {
-  SL_STAGE_PACK
+__kernel void traceBorder(SL_STAGE_ARGS(SL_TRACE_BORDER)) {
+  SL_STAGE_PACK(SL_TRACE_BORDER)
   const SetRef set = setOf(&stage);
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   const uint total = border_starts[launch.border_count];
@@ -64,10 +67,11 @@ __kernel void traceBorder(SL_STAGE_ARGS) {
   countRays(&stage, traced);
 }
 
+#define SL_TRACE_GVS_BORDER(X) SL_SET_BUFFERS(X) X(place_of) X(entries) X(border_edges) X(border_hits) X(bits)
 /// Border rays of the original method, one level a launch (core/shared/gvs_border.h): the slots of the level
 /// over the batch; traces those whose neighbours hit different triangles. Notes as traceBorder does.
-__kernel void traceGvsBorder(SL_STAGE_ARGS) {
-  SL_STAGE_PACK
+__kernel void traceGvsBorder(SL_STAGE_ARGS(SL_TRACE_GVS_BORDER)) {
+  SL_STAGE_PACK(SL_TRACE_GVS_BORDER)
   const SetRef set = setOf(&stage);
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   const uint slots = gvsSlots(launch.level);
@@ -103,9 +107,10 @@ __kernel void traceGvsBorder(SL_STAGE_ARGS) {
   countRays(&stage, traced);
 }
 
+#define SL_TRACE_REVERSE(X) SL_SET_BUFFERS(X) X(faces) X(reverse_items)
 /// Reverse rays of the reverse launch: one a lane.
-__kernel void traceReverse(SL_STAGE_ARGS) {
-  SL_STAGE_PACK
+__kernel void traceReverse(SL_STAGE_ARGS(SL_TRACE_REVERSE)) {
+  SL_STAGE_PACK(SL_TRACE_REVERSE)
   const SetRef set = setOf(&stage);
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   Ray made[SL_PACKET];

@@ -19,7 +19,7 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
   inputs.algorithm = kAlgorithmRevision;
   inputs.intersector = intersectorOf(device);
   inputs.scene_hash = session.sceneHash();
-  inputs.triangle_count = uint32_t(session.scene().triangles.size());
+  inputs.triangle_count = session.scene().triangleCount();
   inputs.scene_name = session.options().scene_name;
   inputs.params = params;
   inputs.has_witnesses = witnesses == Witnesses::kKeep;

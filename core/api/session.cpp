@@ -4,6 +4,7 @@
 #include "core/device/naive/naive_device.h"
 #include "core/device/registry/make_device.h"
 #include "core/scene/check_scene.h"
+#include "core/scene/scene_tree.h"
 
 namespace sightline {
 
@@ -17,7 +18,7 @@ const Bvh& SessionParts::tree() {
     BvhConfig config;
     config.spatial_splits = options.spatial_splits;
     config.threads = options.device_options.threads;
-    bvh = buildBvh(scene.positions, scene.triangles, config);
+    bvh = buildSceneTree(scene, config);
   }
   return *bvh;
 }

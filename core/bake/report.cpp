@@ -50,8 +50,8 @@ TreeSummary summarize(const Bvh& bvh) {
 SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t hash) {
   return {name,
           hash,
-          scene.triangles.size(),
-          scene.positions.size(),
+          scene.triangleCount(),
+          scene.vertexCount(),
           scene.objects.size(),
           scene.degenerate_triangles,
           scene.repaired_triangles,

@@ -7,10 +7,10 @@
 namespace sightline {
 
 void requireScene(const PvsFile& pvs, const Scene& scene, const std::filesystem::path& file) {
-  if (pvs.triangle_count == scene.triangles.size() && pvs.scene_hash == hashScene(scene)) return;
+  if (pvs.triangle_count == scene.triangleCount() && pvs.scene_hash == hashScene(scene)) return;
   throw Error(fmt::format("{}: was baked of another scene ({}, {} triangles; this one has {}{}); bake again",
-                          file.string(), pvs.scene_name, pvs.triangle_count, scene.triangles.size(),
-                          pvs.triangle_count == scene.triangles.size() ? ", but others" : ""));
+                          file.string(), pvs.scene_name, pvs.triangle_count, scene.triangleCount(),
+                          pvs.triangle_count == scene.triangleCount() ? ", but others" : ""));
 }
 
 }  // namespace sightline

@@ -130,7 +130,7 @@ int bakeCells(Session& session, Bake& bake, BakePage& page, CellWarningPrinter& 
     page.curves.resize(index);  // empty for cells of an earlier run
     page.curves.push_back(std::move(trace.curve));
   };
-  const uint64_t triangles = session.scene().triangles.size() - session.scene().degenerate_triangles;
+  const uint64_t triangles = session.scene().triangleCount() - session.scene().degenerate_triangles;
   events.cell_done = [&](uint32_t index, const CellPvs& pvs) {
     printer.cellDone(index, summarize(pvs));
     if (const auto warning = checkSetSize(pvs.triangles.size(), triangles)) {
@@ -243,7 +243,7 @@ void runBake(const BakeOptions& options) {
   Bake bake(bakeInputs(session, loadCells(options.cells), options.params,
                        options.witnesses ? Witnesses::kKeep : Witnesses::kDrop),
             options.out, options.overwrite);
-  say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangles.size(),
+  say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangleCount(),
                   counted(scene.objects.size(), "object"), counted(bake.head().planned.size(), "cell")));
   BakeReport report = startReport(options, scene, bake);
 

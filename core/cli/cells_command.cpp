@@ -26,6 +26,7 @@
 #include "core/io/file_io.h"
 #include "core/place/clear_box.h"
 #include "core/place/place_cells.h"
+#include "core/scene/scene_tree.h"
 
 namespace sightline {
 namespace {
@@ -119,7 +120,7 @@ GridOptions gridOptions(const CellsArguments& arguments) {
 
 /// The grid's cells, with progress. Throws ExitCode if it was stopped.
 std::vector<ViewCell> runGrid(const Scene& scene, const GridOptions& options, GridCounts& counts) {
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const Bvh bvh = buildSceneTree(scene);
   const StopSignal stop;
   StatusLine status;
   GridHooks hooks;
@@ -179,7 +180,7 @@ std::vector<ViewCell> placePath(const Scene& scene, const CellsArguments& argume
   const double margin = arguments.margin.value_or(defaultMargin(sceneBounds(scene), smallest));
   checkMargin(margin, smallest, "cells along a path");
   if (margin == 0) return cells;
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const Bvh bvh = buildSceneTree(scene);
   ClearCells clear = keepClear(scene, bvh, cells, margin);
   if (clear.cells.empty()) {
     throw Error(

@@ -120,7 +120,7 @@ void run(const CompareCommand& command) {
   report.options = command.options;
   report.options.measure = chooseViews(command.views, report.device.on_cpu, command.options.measure);
   fmt::print("{}: {} triangles, {}; {}, {}; {} views of {} x {} pixels a cell\n", command.scene.string(),
-             scene.triangles.size(), counted(cells.size(), "cell"), report.device.id, report.device.name,
+             scene.triangleCount(), counted(cells.size(), "cell"), report.device.id, report.device.name,
              report.options.measure.views, report.options.measure.resolution,
              report.options.measure.resolution);
   StopSignal stop;

@@ -26,6 +26,7 @@
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
+#include "core/scene/scene_tree.h"
 
 namespace sightline {
 namespace {
@@ -168,14 +169,14 @@ void run(const CrosscheckCommand& command) {
   std::vector<ViewCell> cells = loadCells(command.cells);
   placeElsewhere(scene, cells, command.scale, command.move);
   for (const std::string& name : command.devices) requireDevice(name);
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles, {.spatial_splits = command.spatial_splits});
+  const Bvh bvh = buildSceneTree(scene, {.spatial_splits = command.spatial_splits});
   const Devices devices(command.devices, scene, bvh);
 
   CrosscheckHead head{SL_VERSION,      summarize(scene, command.scene.filename().string(), hashScene(scene)),
                       command.scale,   command.move,
                       command.options, {}};
   for (const ViewCell& cell : cells) head.cells.push_back(cell.name);
-  fmt::print("{}: {} triangles, {}", command.scene.string(), scene.triangles.size(),
+  fmt::print("{}: {} triangles, {}", command.scene.string(), scene.triangleCount(),
              counted(cells.size(), "cell"));
   for (const Tracer* device : devices.tracers())
     fmt::print("; {}, {}", device->info().id, device->info().name);

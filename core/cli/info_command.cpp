@@ -49,8 +49,8 @@ void showScene(const std::filesystem::path& file, const SceneLoadOptions& option
   const Scene scene = loadScene(file, options);
   const Bounds bounds = sceneBounds(scene);
   row("scene", file.string());
-  row("triangles", std::to_string(scene.triangles.size()));
-  row("vertices", std::to_string(scene.positions.size()));
+  row("triangles", std::to_string(scene.triangleCount()));
+  row("vertices", std::to_string(scene.vertexCount()));
   row("bounds", point(bounds.low) + " to " + point(bounds.high));
   row("degenerate",
       fmt::format("{} triangles without area (kept, cannot be seen)", scene.degenerate_triangles));

@@ -125,7 +125,7 @@ void measureOne(const MeasureCommand& command, const Scene& scene, Tracer& trace
                 const std::atomic<bool>* stop, MeasureReport& report) {
   std::vector<RankedSet> sets;
   for (const PvsFile& file : files) {
-    sets.push_back(rankedSet(file.cells[cell].triangles, uint32_t(scene.triangles.size())));
+    sets.push_back(rankedSet(file.cells[cell].triangles, scene.triangleCount()));
   }
   const ViewCell& view_cell = files.front().cells[cell].cell;
   const auto errors = measureCell(tracer, view_cell, cell, sets, report.options, progress, stop);
@@ -201,7 +201,7 @@ void run(const MeasureCommand& command) {
   for (size_t s = 0; s < files.size(); ++s) {
     report.sets.push_back({command.pvs[s].string(), files[s].device, files[s].params, {}});
   }
-  fmt::print("{}: {} triangles; {}, {}\n", command.scene.string(), scene.triangles.size(), report.device.id,
+  fmt::print("{}: {} triangles; {}, {}\n", command.scene.string(), scene.triangleCount(), report.device.id,
              report.device.name);
   chooseSize(command, report);
   if (!command.pictures.empty()) removeOldPictures(command, files.front(), cells);

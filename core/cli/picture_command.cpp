@@ -62,7 +62,7 @@ void draw(const PictureCommand& command) {
                                  : renderOutside(trace, scene, cell, command.options);
   savePng(picture.image, command.output);
   fmt::print("{}: {} from {}, {} of {} triangles\n", command.output.string(), cell.cell.name, command.view,
-             cell.triangles.size(), scene.triangles.size());
+             cell.triangles.size(), scene.triangleCount());
   if (!inside) return;
   fmt::print("{} of {} pixels show a triangle outside the set (red)\n", picture.missing_pixels,
              picture.scene_pixels);

@@ -43,7 +43,7 @@ void run(const SceneArguments& arguments) {
   const Bounds bounds = sceneBounds(scene);
   const glm::vec3 size = bounds.high - bounds.low;
   fmt::print("{}: {} triangles, {} vertices, {}, {:.0f} x {:.0f} x {:.0f} m\n", arguments.output,
-             scene.triangles.size(), scene.positions.size(), counted(scene.objects.size(), "object"), size.x,
+             scene.triangleCount(), scene.vertexCount(), counted(scene.objects.size(), "object"), size.x,
              size.y, size.z);
   if (arguments.cells.empty()) return;
   saveCells(cells, arguments.cells);

@@ -17,6 +17,7 @@
 #include "core/device/registry/make_device.h"
 #include "core/formats/load_scene.h"
 #include "core/io/float_text.h"
+#include "core/scene/scene_tree.h"
 #include "core/shared/ray.h"
 
 namespace sightline {
@@ -91,7 +92,7 @@ Json toJson(const TraceCommand& command, const Scene& scene, const RayAnswers& a
                {"scene",
                 {{"name", command.scene.filename().string()},
                  {"hash", hashText(hashScene(scene))},
-                 {"triangles", scene.triangles.size()}}},
+                 {"triangles", scene.triangleCount()}}},
                {"rounding_steps", command.rounding.steps}};
   addAnswers(json, answers, devices);
   json["differ"] = answers.differ();
@@ -103,7 +104,7 @@ void run(const TraceCommand& command) {
   const Ray ray = parseRay(command);
   for (const std::string& name : command.devices) requireDevice(name);
   const Scene scene = loadScene(command.scene, command.load);
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles, {.spatial_splits = command.spatial_splits});
+  const Bvh bvh = buildSceneTree(scene, {.spatial_splits = command.spatial_splits});
   std::vector<std::unique_ptr<Tracer>> devices;
   std::vector<Tracer*> pointers;
   std::vector<std::string> ids;

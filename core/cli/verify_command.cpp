@@ -16,6 +16,7 @@
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
 #include "core/pvs/pvs_writer.h"
+#include "core/scene/scene_tree.h"
 #include "core/verify/verify.h"
 
 namespace sightline {
@@ -86,7 +87,7 @@ void run(const VerifyCommand& command) {
   }
   const Scene scene = loadScene(command.scene, command.load);
   requireScene(pvs, scene, command.pvs);
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles);
+  const Bvh bvh = buildSceneTree(scene);
   const Judge judge(scene, bvh);
   std::vector<CellProofs> cells;
   for (CellPvs& cell : pvs.cells) cells.push_back(verifyCell(judge, scene, cell, command.options));

@@ -78,7 +78,7 @@ Baked bakeOnce(Device& device, const Scene& scene, const ViewCell& cell, uint32_
     const double share = std::exp2(-double(i));
     baked.run.points.push_back({share, stateWithin(trace.curve, params, share), 0, {}});
   }
-  baked.set = rankedSet(device.readPvs(), uint32_t(scene.triangles.size()), {});
+  baked.set = rankedSet(device.readPvs(), scene.triangleCount(), {});
   return baked;
 }
 

@@ -78,10 +78,10 @@ class Maker {
   Corners triangle() {
     const bool seen = !s_.visible.empty() && random_.pick(4) > 0;
     const uint32_t id = seen ? s_.visible[random_.pick(s_.visible.size())].origin_triangle.w
-                             : random_.pick(s_.scene.triangles.size());
-    const glm::uvec3 t = s_.scene.triangles[id];
+                             : random_.pick(s_.scene.triangleCount());
+    const auto t = s_.scene.corners(id);
     const int first = int(random_.pick(3));
-    const auto corner = [&](int i) { return s_.scene.positions[t[(first + i) % 3]]; };
+    const auto corner = [&](int i) { return t[size_t(first + i) % 3]; };
     return {corner(0), corner(1), corner(2)};
   }
 

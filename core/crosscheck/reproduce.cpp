@@ -12,6 +12,7 @@
 #include "core/io/file_io.h"
 #include "core/io/float_text.h"
 #include "core/judge/seen_triangle.h"
+#include "core/scene/scene_tree.h"
 #include "core/shared/vector.h"
 
 namespace sightline {
@@ -89,10 +90,11 @@ Scene partOf(const Scene& scene, std::span<const uint32_t> triangles) {
   Scene part;
   std::map<uint32_t, uint32_t> places;  // of vertices
   for (const uint32_t triangle : triangles) {
-    glm::uvec3 corners = scene.triangles[triangle];
+    const auto positions = scene.corners(triangle);
+    glm::uvec3 corners = scene.vertexNumbers(triangle);
     for (int i = 0; i < 3; ++i) {
       const auto [place, fresh] = places.emplace(corners[i], uint32_t(part.positions.size()));
-      if (fresh) part.positions.push_back(scene.positions[corners[i]]);
+      if (fresh) part.positions.push_back(positions[size_t(i)]);
       corners[i] = place->second;
     }
     part.triangles.push_back(corners);
@@ -145,7 +147,7 @@ Reproducer findReproducer(const Scene& scene, const Judge& judge, const RayAnswe
     if (triangles == result.triangles) continue;
     result.triangles = triangles;
     result.scene = partOf(scene, triangles);
-    const Bvh bvh = buildBvh(result.scene.positions, result.scene.triangles);
+    const Bvh bvh = buildSceneTree(result.scene);
     std::vector<std::unique_ptr<Tracer>> devices;
     std::vector<Tracer*> pointers;
     for (size_t d = 0; d < whole.hits.size(); ++d) {

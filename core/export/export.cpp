@@ -32,12 +32,13 @@ void copyObject(const Scene& scene, const SceneObject& object, const CellPvs& ce
   for (; id < cell.triangles.size(); ++id) {
     const uint32_t triangle = cell.triangles[id];
     if (triangle - object.first_triangle >= object.triangle_count) break;
-    glm::uvec3 corners = scene.triangles[triangle];
+    const auto positions = scene.corners(triangle);
+    glm::uvec3 corners = scene.vertexNumbers(triangle);
     for (int corner = 0; corner < 3; ++corner) {
       uint32_t& index = new_index[corners[corner]];
       if (index == kNoTriangle) {
         index = uint32_t(visible.positions.size());
-        visible.positions.push_back(scene.positions[corners[corner]]);
+        visible.positions.push_back(positions[size_t(corner)]);
       }
       corners[corner] = index;
     }
@@ -72,7 +73,7 @@ Scene visibleScene(const Scene& scene, const CellPvs& cell) {
     throw Error(fmt::format("cell {} sees no triangle: there is nothing to export", cell.cell.name));
   }
   Scene visible;
-  std::vector<uint32_t> new_index(scene.positions.size(), kNoTriangle);
+  std::vector<uint32_t> new_index(scene.vertexCount(), kNoTriangle);
   size_t id = 0;
   for (const SceneObject& object : scene.objects) copyObject(scene, object, cell, id, new_index, visible);
   return visible;

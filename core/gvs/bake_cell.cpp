@@ -378,7 +378,7 @@ CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint3
   const std::vector<uint32_t> contained = containedTriangles(scene, cell);
   if (params.target_error > 0) {
     ErrorBound bound(cell, cell_index, params.seed, params.target_error);
-    std::vector<uint8_t> member(scene.triangles.size(), 0);
+    std::vector<uint8_t> member(scene.triangleCount(), 0);
     for (const uint32_t triangle : contained) member[triangle] = 1;
     bake.run(&bound, std::move(member));
   } else {

@@ -55,9 +55,8 @@ bool ExactHit::contains(uint32_t triangle) const {
 Judge::Judge(const Scene& scene, const Bvh& bvh) : scene_(scene), candidates_(bvh) {}
 
 JudgeTriangle Judge::corners(uint32_t triangle) const {
-  const glm::uvec3 t = scene_.triangles[triangle];
-  return {glm::dvec3(scene_.positions[t.x]), glm::dvec3(scene_.positions[t.y]),
-          glm::dvec3(scene_.positions[t.z])};
+  const auto t = scene_.corners(triangle);
+  return {glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
 }
 
 ExactHit Judge::nearest(const JudgeRay& ray) const {

@@ -42,7 +42,7 @@ class Judge {
 
   /// The corners of a triangle.
   JudgeTriangle corners(uint32_t triangle) const;
-  uint32_t triangleCount() const { return uint32_t(scene_.triangles.size()); }
+  uint32_t triangleCount() const { return scene_.triangleCount(); }
 
  private:
   const Scene& scene_;

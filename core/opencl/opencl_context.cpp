@@ -105,6 +105,23 @@ void OpenClContext::build(const char* source, const std::string& options) {
   }
 }
 
+std::vector<std::string> argumentNames(const ClKernel& kernel) {
+  cl_uint count = 0;
+  checkCl(clGetKernelInfo(kernel.get(), CL_KERNEL_NUM_ARGS, sizeof count, &count, nullptr),
+          "clGetKernelInfo");
+  std::vector<std::string> names(count);
+  for (cl_uint i = 0; i < count; ++i) {
+    size_t bytes = 0;
+    checkCl(clGetKernelArgInfo(kernel.get(), i, CL_KERNEL_ARG_NAME, 0, nullptr, &bytes),
+            "clGetKernelArgInfo");
+    std::string name(bytes, '\0');
+    checkCl(clGetKernelArgInfo(kernel.get(), i, CL_KERNEL_ARG_NAME, bytes, name.data(), nullptr),
+            "clGetKernelArgInfo");
+    names[i] = name.c_str();
+  }
+  return names;
+}
+
 ClKernel OpenClContext::kernel(const char* name) const {
   cl_int code = CL_SUCCESS;
   ClKernel kernel(clCreateKernel(program_.get(), name, &code));

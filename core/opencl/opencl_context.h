@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -16,7 +17,8 @@
 namespace sightline {
 
 /// What every program is compiled with.
-inline constexpr const char* kClBuildOptions = "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt";
+inline constexpr const char* kClBuildOptions =
+    "-cl-std=CL1.2 -cl-fp32-correctly-rounded-divide-sqrt -cl-kernel-arg-info";
 
 /// Throws Error that names the call and the code's name, if the code is not CL_SUCCESS.
 void checkCl(cl_int code, const char* call);
@@ -67,6 +69,9 @@ class ClBuffer {
   std::shared_ptr<uint64_t> total_;  ///< of the context: bytes in all its buffers
 };
 
+/// The names of a kernel's parameters, in order.
+std::vector<std::string> argumentNames(const ClKernel& kernel);
+
 /// One device with its queue and, after build, its program. Commands run in order. Not thread-safe.
 /// Everything throws Error with the name of the call that failed.
 class OpenClContext {
@@ -103,7 +108,7 @@ class OpenClContext {
 
   /// Enqueues a kernel over `global` work items (rounded up to whole groups: kernels check their range).
   /// local: work-group size, 0 lets the driver choose (then global is not rounded). args: ClBuffer, cl_mem,
-  /// scalars or structs, or arrays of handles of buffers, in order. global 0 does nothing.
+  /// scalars or structs, or spans of buffers, in order. global 0 does nothing.
   template <typename... Args>
   void launch(const ClKernel& kernel, uint64_t global, uint32_t local, const Args&... args) {
     cl_uint index = 0;
@@ -123,10 +128,8 @@ class OpenClContext {
       checkCl(clSetKernelArg(kernel.get(), index++, sizeof arg, &arg), "clSetKernelArg");
     }
   }
-  template <size_t kCount>
-  void setArgument(const ClKernel& kernel, cl_uint& index,
-                   const std::array<ClHandle<cl_mem, clReleaseMemObject>, kCount>& buffers) {
-    for (const auto& buffer : buffers) setArgument(kernel, index, buffer.get());
+  void setArgument(const ClKernel& kernel, cl_uint& index, std::span<const cl_mem> buffers) {
+    for (const cl_mem buffer : buffers) setArgument(kernel, index, buffer);
   }
   void enqueue(const ClKernel& kernel, uint64_t global, uint32_t local);
 

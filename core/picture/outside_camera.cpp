@@ -44,7 +44,7 @@ Box focusBox(const Scene& scene, const CellPvs& pvs) {
   const auto skip = std::ptrdiff_t(double(places.size()) * kOutlierShare);
   for (int axis = 0; axis < 3; ++axis) {
     for (size_t i = 0; i < places.size(); ++i) {
-      places[i] = scene.positions[scene.triangles[pvs.triangles[i / 3]][int(i % 3)]][axis];
+      places[i] = scene.corners(pvs.triangles[i / 3])[i % 3][axis];
     }
     const auto low = places.begin() + skip, high = places.end() - 1 - skip;
     std::nth_element(places.begin(), low, places.end());

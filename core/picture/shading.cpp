@@ -25,7 +25,7 @@ void checkSize(uint32_t width, uint32_t height) {
 }
 
 std::vector<uint8_t> membership(const Scene& scene, std::span<const uint32_t> triangles) {
-  std::vector<uint8_t> member(scene.triangles.size(), 0);
+  std::vector<uint8_t> member(scene.triangleCount(), 0);
   for (const uint32_t triangle : triangles) {
     if (triangle >= member.size()) {
       throw Error(
@@ -37,9 +37,8 @@ std::vector<uint8_t> membership(const Scene& scene, std::span<const uint32_t> tr
 }
 
 glm::vec3 facingNormal(const Scene& scene, uint32_t triangle, glm::vec3 direction) {
-  const glm::uvec3 corner = scene.triangles[triangle];
-  const glm::dvec3 a = scene.positions[corner.x], b = scene.positions[corner.y],
-                   c = scene.positions[corner.z];
+  const auto corners = scene.corners(triangle);
+  const glm::dvec3 a = corners[0], b = corners[1], c = corners[2];
   const glm::dvec3 normal = glm::cross(b - a, c - a);
   const double length = glm::length(normal);
   if (!(length > 0)) return -direction;

@@ -42,9 +42,9 @@ struct LocalTriangle {
 };
 
 LocalTriangle localTriangle(const Scene& scene, const CellFrame& frame, uint32_t id) {
-  const glm::uvec3& t = scene.triangles[id];
-  return {{frame.toLocal(glm::dvec3(scene.positions[t.x])), frame.toLocal(glm::dvec3(scene.positions[t.y])),
-           frame.toLocal(glm::dvec3(scene.positions[t.z]))}};
+  const auto t = scene.corners(id);
+  return {
+      {frame.toLocal(glm::dvec3(t[0])), frame.toLocal(glm::dvec3(t[1])), frame.toLocal(glm::dvec3(t[2]))}};
 }
 
 bool meets(const LocalTriangle& triangle, const Box& box) {

@@ -38,10 +38,9 @@ struct CenteredBox {
 
 bool meetsAnything(const Scene& scene, const Bvh& bvh, const CenteredBox& box) {
   return anyInLeaves(bvh, box.center - box.half_size, box.center + box.half_size, [&](uint32_t id) {
-    const glm::uvec3 t = scene.triangles[id];
-    const glm::dvec3 corners[3] = {glm::dvec3(scene.positions[t.x]) - box.center,
-                                   glm::dvec3(scene.positions[t.y]) - box.center,
-                                   glm::dvec3(scene.positions[t.z]) - box.center};
+    const auto t = scene.corners(id);
+    const glm::dvec3 corners[3] = {glm::dvec3(t[0]) - box.center, glm::dvec3(t[1]) - box.center,
+                                   glm::dvec3(t[2]) - box.center};
     return triangleMeetsBox(corners, box.half_size);
   });
 }

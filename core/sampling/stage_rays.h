@@ -41,12 +41,9 @@ class SlotRays {
   SlotWalk walk_;
 };
 
-inline vec3 cornerOf(const Scene& scene, uint32_t triangle, int corner) {
-  return scene.positions[scene.triangles[triangle][corner]];
-}
-
 inline Corners cornersOf(const Scene& scene, uint32_t triangle) {
-  return {cornerOf(scene, triangle, 0), cornerOf(scene, triangle, 1), cornerOf(scene, triangle, 2)};
+  const auto corners = scene.corners(triangle);
+  return {corners[0], corners[1], corners[2]};
 }
 
 inline vec3 entryOrigin(const PvsEntry& entry) {
@@ -55,25 +52,22 @@ inline vec3 entryOrigin(const PvsEntry& entry) {
 
 /// Samples between the ends of each long edge of the border polygon of an entry's triangle.
 inline uint32_t borderSamplesOf(const Scene& scene, const PvsEntry& entry, const StageParams& params) {
-  const uint32_t triangle = entry.origin_triangle.w;
-  return borderSamples(cornerOf(scene, triangle, 0), cornerOf(scene, triangle, 1),
-                       cornerOf(scene, triangle, 2), entryOrigin(entry), params);
+  const Corners t = cornersOf(scene, entry.origin_triangle.w);
+  return borderSamples(t.a, t.b, t.c, entryOrigin(entry), params);
 }
 
 /// Side 0, 1 or 2 of the border polygon of an entry's triangle, seen from where the entry's ray began.
 inline BorderEdge borderEdgeOf(const Scene& scene, const PvsEntry& entry, uint32_t side,
                                const StageParams& params) {
-  const uint32_t triangle = entry.origin_triangle.w;
-  return borderEdge(cornerOf(scene, triangle, 0), cornerOf(scene, triangle, 1), cornerOf(scene, triangle, 2),
-                    side, entryOrigin(entry), params);
+  const Corners t = cornersOf(scene, entry.origin_triangle.w);
+  return borderEdge(t.a, t.b, t.c, side, entryOrigin(entry), params);
 }
 
 /// Border ray k of an entry. samples: borderSamplesOf.
 inline Ray borderRayOf(const Scene& scene, const PvsEntry& entry, uint32_t k, uint32_t samples,
                        const StageParams& params) {
-  const uint32_t triangle = entry.origin_triangle.w;
-  return polygonRay(cornerOf(scene, triangle, 0), cornerOf(scene, triangle, 1), cornerOf(scene, triangle, 2),
-                    k, samples, entryOrigin(entry), params);
+  const Corners t = cornersOf(scene, entry.origin_triangle.w);
+  return polygonRay(t.a, t.b, t.c, k, samples, entryOrigin(entry), params);
 }
 
 /// How many border rays the entries have before each of them, and one number more: in all.
@@ -176,9 +170,8 @@ class GvsLevelRays {
 inline bool isDiscontinuityOf(const Scene& scene, const PvsEntry& entry, const Ray& ray, const Hit& hit,
                               const StageParams& params) {
   if (!isGvs(params)) return isDiscontinuity(ray, hit, params);
-  const uint32_t t = entry.origin_triangle.w;
-  return isGvsDiscontinuity(ray, hit, cornerOf(scene, t, 0), cornerOf(scene, t, 1), cornerOf(scene, t, 2),
-                            params);
+  const Corners t = cornersOf(scene, entry.origin_triangle.w);
+  return isGvsDiscontinuity(ray, hit, t.a, t.b, t.c, params);
 }
 
 /// Appends the discontinuities of a batch that get reverse rays. pending: the list's entries from `first` on;

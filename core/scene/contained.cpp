@@ -29,13 +29,11 @@ struct RoundedCell {
   }
 
   bool contains(const Scene& scene, uint32_t id) const {
-    const glm::uvec3& t = scene.triangles[id];
-    const glm::dvec3 corners[3] = {frame.toLocal(glm::dvec3(scene.positions[t.x])),
-                                   frame.toLocal(glm::dvec3(scene.positions[t.y])),
-                                   frame.toLocal(glm::dvec3(scene.positions[t.z]))};
+    const auto t = scene.corners(id);
+    const glm::dvec3 corners[3] = {frame.toLocal(glm::dvec3(t[0])), frame.toLocal(glm::dvec3(t[1])),
+                                   frame.toLocal(glm::dvec3(t[2]))};
     return triangleMeetsBox(corners, half_size) &&
-           std::max({corners[0].z, corners[1].z, corners[2].z}) > front &&
-           !hasZeroArea(scene.positions[t.x], scene.positions[t.y], scene.positions[t.z]);
+           std::max({corners[0].z, corners[1].z, corners[2].z}) > front && !hasZeroArea(t[0], t[1], t[2]);
   }
 
   CellFrame frame;
@@ -47,7 +45,7 @@ struct RoundedCell {
 
 std::vector<uint32_t> containedTriangles(const Scene& scene, const ViewCell& cell) {
   const RoundedCell rounded(cell);
-  const size_t count = scene.triangles.size();
+  const size_t count = scene.triangleCount();
   std::vector<std::vector<uint32_t>> blocks((count + kBlock - 1) / kBlock);
   tbb::parallel_for(size_t(0), blocks.size(), [&](size_t block) {
     for (size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {

@@ -15,10 +15,9 @@ double signedUnit(uint32_t bits) {
 }
 
 bool hitsBack(const Scene& scene, uint32_t id, const glm::vec3& direction) {
-  const glm::uvec3 t = scene.triangles[id];
-  const glm::dvec3 a = scene.positions[t.x];
-  const glm::dvec3 normal =
-      glm::cross(glm::dvec3(scene.positions[t.y]) - a, glm::dvec3(scene.positions[t.z]) - a);
+  const auto t = scene.corners(id);
+  const glm::dvec3 a = t[0];
+  const glm::dvec3 normal = glm::cross(glm::dvec3(t[1]) - a, glm::dvec3(t[2]) - a);
   return glm::dot(normal, glm::dvec3(direction)) > 0;
 }
 

@@ -57,7 +57,7 @@ class Positions {
   Loss loss(double median_edge, bool all) const {
     Loss loss;
     if (remainders_.empty() || (!all && scene_.degenerate_triangles == 0)) return loss;
-    for (size_t i = 0; i < scene_.triangles.size(); ++i) {
+    for (size_t i = 0; i < scene_.triangleCount(); ++i) {
       const glm::uvec3& t = scene_.triangles[i];
       const bool flat = hasZeroArea(scene_.positions[t.x], scene_.positions[t.y], scene_.positions[t.z]);
       if ((!flat && !all) || !hasShape(i, median_edge)) continue;
@@ -160,7 +160,7 @@ std::string precisionWarning(const Scene& scene, std::span<const glm::vec3> rema
       "triangles {} lose their area by that and {} turn by more than 30 degrees; the scene is too {} for its "
       "detail: {}",
       extent.step, largest(extent.reach), moved ? " (less the offset)" : "", median_edge,
-      scene.triangles.size(), loss.collapsed, loss.turned, extent.isFar() ? "small" : "wide",
+      scene.triangleCount(), loss.collapsed, loss.turned, extent.isFar() ? "small" : "wide",
       extent.isFar() ? "scale it up, and move it to the origin" : "cut it into parts");
 }
 

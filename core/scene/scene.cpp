@@ -29,15 +29,14 @@ uint64_t hashScene(const Scene& scene) {
 }
 
 Bounds sceneBounds(const Scene& scene) {
-  if (scene.triangles.empty()) return {};
+  if (scene.triangleCount() == 0) return {};
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const Bounds nothing{glm::vec3(kInfinity), glm::vec3(-kInfinity)};
   return tbb::parallel_reduce(
-      tbb::blocked_range<size_t>(0, scene.triangles.size(), 1 << 16), nothing,
-      [&](const tbb::blocked_range<size_t>& range, Bounds bounds) {
-        for (size_t i = range.begin(); i != range.end(); ++i) {
-          for (int corner = 0; corner < 3; ++corner) {
-            const glm::vec3& position = scene.positions[scene.triangles[i][corner]];
+      tbb::blocked_range<uint32_t>(0, scene.triangleCount(), 1 << 16), nothing,
+      [&](const tbb::blocked_range<uint32_t>& range, Bounds bounds) {
+        for (uint32_t i = range.begin(); i != range.end(); ++i) {
+          for (const glm::vec3& position : scene.corners(i)) {
             bounds.low = glm::min(bounds.low, position);
             bounds.high = glm::max(bounds.high, position);
           }

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <string>
@@ -42,6 +43,19 @@ struct Scene {
   uint64_t hidden_nodes = 0;            ///< left out by glTF's KHR_node_visibility, with those below them
   std::vector<std::string> warnings;    ///< a line each: what else of the file is not in the scene, or only
                                         ///< roughly
+
+  uint32_t triangleCount() const { return static_cast<uint32_t>(triangles.size()); }
+  uint64_t vertexCount() const { return positions.size(); }
+
+  /// Where triangle `id` is, in world space. Whoever only asks where triangles are asks here, not in
+  /// `triangles`.
+  std::array<glm::vec3, 3> corners(uint32_t id) const {
+    const glm::uvec3& t = triangles[id];
+    return {positions[t.x], positions[t.y], positions[t.z]};
+  }
+
+  /// Its vertices' numbers, 0 .. vertexCount() - 1: triangles that share one have the same number for it.
+  glm::uvec3 vertexNumbers(uint32_t id) const { return triangles[id]; }
 };
 
 /// Hash of positions, triangles and, if there is one, offset (XXH3, 64 bit): what a PVS depends on.

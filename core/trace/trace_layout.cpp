@@ -8,14 +8,14 @@
 namespace sightline {
 namespace {
 
-void pack(const glm::vec3 (&vertices)[3], uint32_t id, TriangleRecord& record) {
+void pack(const std::array<glm::vec3, 3>& vertices, uint32_t id, TriangleRecord& record) {
   for (int i = 0; i < 3; ++i) {
     for (int axis = 0; axis < 3; ++axis) record.vertices[3 * i + axis] = vertices[i][axis];
   }
   record.id = id;
 }
 
-void pack(const glm::vec3 (&vertices)[3], uint32_t id, TriangleRecordGpu& record) {
+void pack(const std::array<glm::vec3, 3>& vertices, uint32_t id, TriangleRecordGpu& record) {
   record.v0 = vec4(vertices[0], uintBitsToFloat(id));
   record.v1 = vec4(vertices[1], 0.0f);
   record.v2 = vec4(vertices[2], 0.0f);
@@ -25,10 +25,7 @@ template <typename Record>
 void packAll(const Scene& scene, const Bvh& bvh, size_t first, std::span<Record> out) {
   tbb::parallel_for(size_t{0}, out.size(), [&](size_t i) {
     const uint32_t id = bvh.references[first + i];
-    const glm::uvec3 corners = scene.triangles[id];
-    const glm::vec3 vertices[3] = {scene.positions[corners.x], scene.positions[corners.y],
-                                   scene.positions[corners.z]};
-    pack(vertices, id, out[i]);
+    pack(scene.corners(id), id, out[i]);
   });
 }
 

@@ -49,7 +49,7 @@ struct Bin {
 /// Solid angle of a triangle (Van Oosterom and Strackee 1983).
 double solidAngle(const Scene& scene, uint32_t triangle, const glm::dvec3& eye) {
   glm::dvec3 corner[3];
-  for (int i = 0; i < 3; ++i) corner[i] = glm::normalize(glm::dvec3(cornerOf(scene, triangle, i)) - eye);
+  for (int i = 0; i < 3; ++i) corner[i] = glm::normalize(glm::dvec3(scene.corners(triangle)[size_t(i)]) - eye);
   const double volume = glm::dot(corner[0], glm::cross(corner[1], corner[2]));
   const double sum =
       1 + glm::dot(corner[0], corner[1]) + glm::dot(corner[1], corner[2]) + glm::dot(corner[2], corner[0]);
@@ -58,7 +58,7 @@ double solidAngle(const Scene& scene, uint32_t triangle, const glm::dvec3& eye) 
 
 double distanceTo(const Scene& scene, uint32_t triangle, const glm::dvec3& eye) {
   glm::dvec3 sum(0);
-  for (int i = 0; i < 3; ++i) sum += glm::dvec3(cornerOf(scene, triangle, i));
+  for (int i = 0; i < 3; ++i) sum += glm::dvec3(scene.corners(triangle)[size_t(i)]);
   return glm::length(sum / 3.0 - eye);
 }
 

@@ -50,7 +50,7 @@ class CpuDevice final : public Device {
         bvh_(bvh),
         tracer_(scene, bvh),
         arena_(static_cast<int>(threadCount(options))),
-        set_(static_cast<uint32_t>(scene.triangles.size()), wantsHash(options)) {
+        set_(scene.triangleCount(), wantsHash(options)) {
     const uint64_t bytes = residentBytes() + set_.bytes();
     if (options.memory_budget_bytes == 0 || bytes <= options.memory_budget_bytes) return;
     throw Error(fmt::format("cpu: scene, tree and set take {} bytes, more than the {} of --memory-budget",
@@ -218,7 +218,7 @@ class CpuDevice final : public Device {
   bool wantsHash(const DeviceOptions& options) const {
     if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
     return options.memory_budget_bytes > 0 &&
-           residentBytes() + scene_.triangles.size() * 4 > options.memory_budget_bytes;
+           residentBytes() + uint64_t(scene_.triangleCount()) * 4 > options.memory_budget_bytes;
   }
 
   void parallel(size_t count, auto&& body) {

@@ -35,7 +35,7 @@ class GpuSampler : public Device {
   template <typename... Arguments>
   explicit GpuSampler(const Scene& scene, const DeviceOptions& options, const Arguments&... arguments)
       : api_(arguments...),
-        triangle_count_(static_cast<uint32_t>(scene.triangles.size())),
+        triangle_count_(scene.triangleCount()),
         set_(api_, triangle_count_, wantsHash(options)) {
     reserve(StageBuffer::faces, 6 * sizeof(Face), "faces of the view cell");
     reserveEntries(1u << 16);

@@ -1,10 +1,27 @@
 #include "core/device/opencl/opencl_stages.h"
 
+#include <algorithm>
+#include <span>
+#include <string_view>
+
 namespace sightline {
 namespace {
 
 /// From so many bytes on a read goes through pinned memory.
 constexpr uint64_t kFastReadBytes = 1u << 20;
+
+/// Which buffers a kernel takes after its launch: its parameters bear their names.
+std::vector<StageBuffer> buffersOf(const ClKernel& kernel) {
+#define SL_BUFFER_TEXT(type, name) #name,
+  constexpr std::string_view kNames[] = {SL_STAGE_BUFFERS(SL_BUFFER_TEXT)};
+#undef SL_BUFFER_TEXT
+  std::vector<StageBuffer> buffers;
+  for (const std::string& name : argumentNames(kernel)) {
+    const auto place = std::find(std::begin(kNames), std::end(kNames), name);
+    if (place != std::end(kNames)) buffers.push_back(StageBuffer(place - kNames));
+  }
+  return buffers;
+}
 
 }  // namespace
 
@@ -15,12 +32,15 @@ OpenClStages::OpenClStages(const std::string& selector, const Scene& scene, cons
   buildKernels(context_, lanes_);
   // Groups of 64 rays keep the cores of a CPU evenly busy and fill the smallest unit of a GPU.
   local_ = options.work_group_size > 0 ? options.work_group_size : std::max(1u, 64 / lanes_);
-  for (uint32_t i = 0; i < kGpuStages; ++i) kernels_[i] = context_.kernel(kernelName(GpuStage(i)));
+  for (uint32_t i = 0; i < kGpuStages; ++i) {
+    kernels_[i] = context_.kernel(kernelName(GpuStage(i)));
+    buffers_of_[i] = buffersOf(kernels_[i]);
+  }
   scene_ = uploadScene(context_, scene, bvh, lanes_);
   dummy_ = context_.buffer(0, "dummy");
   for (uint32_t i = 0; i < kStageBuffers; ++i) bind(StageBuffer(i), dummy_);
 
-  std::vector<uint32_t> record_of(scene.triangles.size(), 0);
+  std::vector<uint32_t> record_of(scene.triangleCount(), 0);
   for (size_t i = bvh.references.size(); i-- > 0;) record_of[bvh.references[i]] = static_cast<uint32_t>(i);
   record_of_ = context_.buffer(record_of.size() * 4, "index of triangles");
   context_.write(record_of_, record_of.data(), record_of.size() * 4);
@@ -66,7 +86,11 @@ void OpenClStages::run(GpuStage stage, uint64_t count) {
                            bound(StageBuffer::views).get(), launch_.resolution, launch_.item_count,
                            bound(StageBuffer::view_triangles).get());
   }
-  context_.launch(kernel, items, local, scene_.nodes, scene_.triangles, scene_.reach, launch_, bound_);
+  std::array<cl_mem, kStageBuffers> buffers;
+  const std::vector<StageBuffer>& names = buffers_of_[uint32_t(stage)];
+  std::ranges::transform(names, buffers.begin(), [&](StageBuffer name) { return bound(name).get(); });
+  context_.launch(kernel, items, local, scene_.nodes, scene_.triangles, scene_.reach, launch_,
+                  std::span<const cl_mem>(buffers.data(), names.size()));
 }
 
 std::array<uint32_t, kCounterWords> OpenClStages::takeCounters() {

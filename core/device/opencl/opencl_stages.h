@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <string>
+#include <vector>
 
 #include "core/device/device.h"
 #include "core/device/gpu/gpu_stage.h"
@@ -9,8 +10,8 @@
 
 namespace sightline {
 
-/// The stages as OpenCL kernels (cl_kernels): the API of a GpuSampler. All kernels of a bake have the same
-/// parameters; buffers that none was bound to are small dummies.
+/// The stages as OpenCL kernels (cl_kernels): the API of a GpuSampler. A kernel's parameters bear the names
+/// of the buffers that it takes; those that none was bound to are small dummies.
 class OpenClStages {
  public:
   using Buffer = ClBuffer;
@@ -45,6 +46,7 @@ class OpenClStages {
   OpenClScene scene_;
   ClBuffer dummy_, record_of_, counters_;
   std::array<ClKernel, kGpuStages> kernels_;
+  std::array<std::vector<StageBuffer>, kGpuStages> buffers_of_;            ///< that each takes, in order
   std::array<ClHandle<cl_mem, clReleaseMemObject>, kStageBuffers> bound_;  ///< each holds a reference
   StageLaunch launch_{};
 };

@@ -11,11 +11,10 @@ namespace {
 
 void packCorners(const Scene& scene, const uint32_t* ids, float* corners, size_t count) {
   tbb::parallel_for(size_t{0}, count, [&](size_t i) {
-    const glm::uvec3 triangle = scene.triangles[ids[i]];
-    for (int corner = 0; corner < 3; ++corner) {
-      for (int axis = 0; axis < 3; ++axis) {
-        corners[9 * i + 3 * corner + axis] = scene.positions[triangle[corner]][axis];
-      }
+    const auto triangle = scene.corners(ids[i]);
+    for (size_t corner = 0; corner < 3; ++corner) {
+      for (int axis = 0; axis < 3; ++axis)
+        corners[9 * i + 3 * corner + size_t(axis)] = triangle[corner][axis];
     }
   });
 }
@@ -34,7 +33,7 @@ void VulkanScene::describe(VulkanRunner& runner) const {
 VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, const Bvh& bvh,
                               uint32_t part_limit) {
   checkTraceable(bvh);
-  const auto count = static_cast<uint32_t>(scene.triangles.size());
+  const auto count = scene.triangleCount();
   const uint32_t possible = largestPart(context, count);
   const LeafParts leaves =
       splitIntoParts(bvh, count, part_limit > 0 ? std::min(part_limit, possible) : possible);
