@@ -14,7 +14,9 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
   const std::string& device = session.options().device;
   checkParams(params);
   requireMethodOn(params.method, device);
-  if (const auto problem = cellProblem(cells)) throw Error(problem->text(), kExitUsage);
+  const glm::dvec3& offset = session.scene().offset;
+  std::vector<ViewCell> planned = moved({cells.begin(), cells.end()}, -offset);
+  if (const auto problem = cellProblem(planned)) throw Error(problem->text(), kExitUsage);
   PvsFile inputs;
   inputs.algorithm = kAlgorithmRevision;
   inputs.intersector = intersectorOf(device);
@@ -23,7 +25,8 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
   inputs.scene_name = session.options().scene_name;
   inputs.params = params;
   inputs.has_witnesses = witnesses == Witnesses::kKeep;
-  inputs.planned.assign(cells.begin(), cells.end());
+  inputs.offset = offset;
+  inputs.planned = std::move(planned);
   return inputs;
 }
 

@@ -77,7 +77,7 @@ std::string reportJson(const BakeReport& report) {
   Json cells = Json::array();
   for (size_t i = 0; i < report.cells.size(); ++i) {
     const CellSummary& cell = report.cells[i];
-    Json json = cellToJson(cell.cell);
+    Json json = cellToJson(cell.cell, report.scene.offset);
     json["warnings"] = toJson(warningsOf(report, i));
     addCellStatistics(json, cell, report.scene.triangles);
     cells.push_back(json);

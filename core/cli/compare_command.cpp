@@ -107,7 +107,7 @@ void run(const CompareCommand& command) {
                                                            .device_options = command.device_options,
                                                            .spatial_splits = command.spatial_splits});
   const Scene& scene = session.scene();
-  const std::vector<ViewCell> cells = loadCells(command.cells);
+  const std::vector<ViewCell> cells = moved(loadCells(command.cells), -scene.offset);
   std::vector<Device*> by_method;
   for (const Method method : command.options.methods) by_method.push_back(&session.parts().device(method));
 

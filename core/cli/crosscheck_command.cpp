@@ -166,7 +166,7 @@ void run(const CrosscheckCommand& command) {
   }
   const TextOutputs outputs({&command.report, 1});
   Scene scene = loadScene(command.scene, command.load);
-  std::vector<ViewCell> cells = loadCells(command.cells);
+  std::vector<ViewCell> cells = moved(loadCells(command.cells), -scene.offset);
   placeElsewhere(scene, cells, command.scale, command.move);
   for (const std::string& name : command.devices) requireDevice(name);
   const Bvh bvh = buildSceneTree(scene, {.spatial_splits = command.spatial_splits});

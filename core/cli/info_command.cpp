@@ -14,6 +14,7 @@
 #include "core/pvs/param_table.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
+#include "core/scene/median_edge.h"
 
 namespace sightline {
 namespace {
@@ -27,6 +28,11 @@ void row(const std::string& name, const std::string& value) {
 
 std::string point(const glm::dvec3& p) {
   return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z);
+}
+
+/// With digits for large numbers.
+std::string farPoint(const glm::dvec3& p) {
+  return fmt::format("({:.12g}, {:.12g}, {:.12g})", p.x, p.y, p.z);
 }
 
 std::string cellLine(const ViewCell& cell) {
@@ -45,13 +51,39 @@ bool isPvs(const std::filesystem::path& file) {
   return std::memcmp(start, kPvsMagic, sizeof(start)) == 0 || extension == ".pvs" || extension == ".part";
 }
 
+/// Whether a scene looks as if its unit were a millimetre: larger than a kilometre in metres, of parts larger
+/// than rooms. (A hint: terrain may be so too.)
+bool looksLikeMillimetres(const glm::dvec3& extent, double median_edge) {
+  constexpr double kSmallest = 1'000, kLargest = 1'000'000, kSmallestEdge = 20;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  return longest >= kSmallest && longest <= kLargest && median_edge >= kSmallestEdge;
+}
+
+/// Where the scene lies, in its file's coordinates, and how large it and its detail are.
+void showSize(const Scene& scene) {
+  const Bounds bounds = sceneBounds(scene);
+  const glm::dvec3 extent = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);
+  const double median_edge = medianEdge(scene);
+  if (scene.offset == glm::dvec3(0.0)) {
+    row("bounds", point(bounds.low) + " to " + point(bounds.high));
+  } else {
+    row("bounds", farPoint(glm::dvec3(bounds.low) + scene.offset) + " to " +
+                      farPoint(glm::dvec3(bounds.high) + scene.offset));
+    row("offset", farPoint(scene.offset) + ", taken off: single precision would lose detail there");
+  }
+  row("extent",
+      fmt::format("{:g} x {:g} x {:g}, median edge {:g}", extent.x, extent.y, extent.z, median_edge));
+  if (looksLikeMillimetres(extent, median_edge)) {
+    row("hint", "looks like millimetres: then sizes of cells are millimetres too");
+  }
+}
+
 void showScene(const std::filesystem::path& file, const SceneLoadOptions& options) {
   const Scene scene = loadScene(file, options);
-  const Bounds bounds = sceneBounds(scene);
   row("scene", file.string());
   row("triangles", std::to_string(scene.triangleCount()));
   row("vertices", std::to_string(scene.vertexCount()));
-  row("bounds", point(bounds.low) + " to " + point(bounds.high));
+  showSize(scene);
   row("degenerate",
       fmt::format("{} triangles without area (kept, cannot be seen)", scene.degenerate_triangles));
   if (options.repair) row("repaired", fmt::format("{} triangles dropped", scene.repaired_triangles));
@@ -99,6 +131,7 @@ void showPvs(const std::filesystem::path& file) {
   row("visible sets", fmt::format("{}, format version {}", file.string(), pvs.version));
   row("scene",
       fmt::format("{}, {} triangles, hash {}", pvs.scene_name, pvs.triangle_count, hashText(pvs.scene_hash)));
+  if (pvs.offset != glm::dvec3(0.0)) row("offset", farPoint(pvs.offset) + ", taken off coordinates");
   row("device", pvs.device);
   row("algorithm", fmt::format("revision {}{}", pvs.algorithm,
                                pvs.intersector.empty() ? "" : ", intersection test of " + pvs.intersector));

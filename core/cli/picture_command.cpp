@@ -58,8 +58,10 @@ void draw(const PictureCommand& command) {
   };
 
   const bool inside = command.view == "inside";
-  const Picture picture = inside ? renderInside(trace, scene, cell, command.options)
-                                 : renderOutside(trace, scene, cell, command.options);
+  PictureOptions options = command.options;
+  options.cut_height -= float(scene.offset.y);
+  const Picture picture =
+      inside ? renderInside(trace, scene, cell, options) : renderOutside(trace, scene, cell, options);
   savePng(picture.image, command.output);
   fmt::print("{}: {} from {}, {} of {} triangles\n", command.output.string(), cell.cell.name, command.view,
              cell.triangles.size(), scene.triangleCount());

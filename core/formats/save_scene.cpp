@@ -89,6 +89,9 @@ json gltfDocument(const Scene& scene, uint64_t position_bytes, uint64_t triangle
   for (const SceneObject& object : scene.objects) {
     roots.push_back(nodes.size());
     nodes.push_back({{"mesh", meshes.size()}, {"name", object.name}});
+    if (scene.offset != glm::dvec3(0.0)) {
+      nodes.back()["translation"] = {scene.offset.x, scene.offset.y, scene.offset.z};
+    }
     const json primitive = {
         {"attributes", {{"POSITION", 0}}}, {"indices", accessors.size()}, {"material", 0}};
     meshes.push_back({{"primitives", json::array({primitive})}});
@@ -125,7 +128,13 @@ void writeObj(const Scene& scene, const std::string& name, const WriteText& writ
   TextWriter writer(write);
   for (const glm::vec3& position : scene.positions) {
     writer.text("v");
-    for (int i = 0; i < 3; ++i) writer.number(position[i]);
+    for (int i = 0; i < 3; ++i) {
+      if (scene.offset[i] == 0.0) {
+        writer.number(position[i]);
+      } else {
+        writer.number(double(position[i]) + scene.offset[i]);
+      }
+    }
     writer.text("\n");
   }
   for (const SceneObject& object : scene.objects) {

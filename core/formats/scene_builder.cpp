@@ -14,6 +14,10 @@
 namespace sightline {
 namespace {
 
+/// Bad vertices whose places are kept for messages: they may be all of a file, and faces that use one come
+/// mostly soon.
+constexpr size_t kBadPlaces = 1000;
+
 /// False for NaN too.
 bool isInRange(const glm::vec3& v) {
   return std::abs(v.x) <= kLargestCoordinate && std::abs(v.y) <= kLargestCoordinate &&
@@ -101,14 +105,25 @@ void SceneBuilder::add(const glm::vec3& position, const glm::dvec3& full, const 
     scene_.positions.push_back(position);
     return;
   }
+  if (bad_vertices_.size() < kBadPlaces && !repair_) bad_places_.push_back(place());
   bad_vertices_.emplace_back(uint32_t(scene_.positions.size()), position);
   scene_.positions.emplace_back(0.0f);
 }
 
-const glm::vec3* SceneBuilder::badVertex(int64_t index) const {
+std::optional<size_t> SceneBuilder::badVertex(int64_t index) const {
   const auto found = std::lower_bound(bad_vertices_.begin(), bad_vertices_.end(), index,
                                       [](const auto& bad, int64_t wanted) { return bad.first < wanted; });
-  return found == bad_vertices_.end() || found->first != index ? nullptr : &found->second;
+  if (found == bad_vertices_.end() || found->first != index) return std::nullopt;
+  return size_t(found - bad_vertices_.begin());
+}
+
+void SceneBuilder::failAtBadVertex(size_t bad, const Place& face) const {
+  const glm::vec3& position = bad_vertices_[bad].second;
+  const bool finite = std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
+  throw Error(fmt::format(
+      "{}: vertex ({}, {}, {}) is {}; --repair drops its triangles",
+      bad < bad_places_.size() ? bad_places_[bad] : face(), position.x, position.y, position.z,
+      finite ? "farther than 2^40 from the origin, too far to trace: scale the scene" : "not finite"));
 }
 
 void SceneBuilder::closeObject() {
@@ -133,16 +148,10 @@ bool SceneBuilder::usable(std::span<const int64_t> corners, const VertexRange& v
   }
   for (const int64_t corner : corners) {
     const bool in_range = corner >= 0 && corner < vertices.count;
-    const glm::vec3* bad = in_range ? badVertex(vertices.first + corner) : nullptr;
-    if (in_range && bad == nullptr) continue;
+    const std::optional<size_t> bad = in_range ? badVertex(vertices.first + corner) : std::nullopt;
+    if (in_range && !bad) continue;
     if (repair_) return false;
-    if (bad != nullptr) {
-      const bool finite = std::isfinite(bad->x) && std::isfinite(bad->y) && std::isfinite(bad->z);
-      throw Error(fmt::format(
-          "{}: vertex {} at ({}, {}, {}) is {}; --repair drops its triangles", place(),
-          corner + vertices.number_of_first, bad->x, bad->y, bad->z,
-          finite ? "farther than 2^40 from the origin, too far to trace: scale the scene" : "not finite"));
-    }
+    if (bad) failAtBadVertex(*bad, place);
     if (vertices.count == 0) throw Error(fmt::format("{}: face without any vertex in the file", place()));
     throw Error(fmt::format("{}: vertex index {} is out of range {}..{}; --repair drops the face", place(),
                             corner + vertices.number_of_first, vertices.number_of_first,

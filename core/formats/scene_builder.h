@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <exception>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -81,14 +82,16 @@ class SceneBuilder {
   void addTriangle(const glm::uvec3& triangle, const Place& place);
   bool usable(std::span<const int64_t> corners, const VertexRange& vertices, const Place& place) const;
   void add(const glm::vec3& position, const glm::dvec3& full, const Place& place);
-  /// The vertex as the file has it, if it is not finite or too far out.
-  const glm::vec3* badVertex(int64_t index) const;
+  /// Which of the bad vertices it is, if it is one.
+  std::optional<size_t> badVertex(int64_t index) const;
+  [[noreturn]] void failAtBadVertex(size_t bad, const Place& face) const;
   void closeObject();
 
   bool repair_;
   Scene scene_;
   SceneObject object_;
-  std::vector<std::pair<uint32_t, glm::vec3>> bad_vertices_;  ///< by index, ascending
+  std::vector<std::pair<uint32_t, glm::vec3>> bad_vertices_;  ///< not finite or too far out; ascending
+  std::vector<std::string> bad_places_;                       ///< where the first of them stand in the file
   bool file_has_floats_ = true;                               ///< looked at only with an offset
   std::vector<glm::vec3>
       remainders_;                  ///< what positions lost by rounding; shorter if the others lost nothing

@@ -16,15 +16,17 @@ inline constexpr uint32_t kPvsVersion = 4;
 /// All of a .pvs file (docs/pvs-format.md).
 struct PvsFile {
   uint32_t version = kPvsVersion;  ///< of the format that it was read from
-  uint32_t algorithm = 0;   ///< kAlgorithmRevision (core/gvs/algorithm_revision.h) of the program that baked;
-                            ///< 1 for all that wrote older versions of the format
-  std::string intersector;  ///< intersectorOf the device (core/device/registry/make_device.h): the sets depend on it
+  uint32_t algorithm = 0;  ///< kAlgorithmRevision (core/gvs/algorithm_revision.h) of the program that baked;
+                           ///< 1 for all that wrote older versions of the format
+  std::string
+      intersector;  ///< intersectorOf the device (core/device/registry/make_device.h): the sets depend on it
   uint64_t scene_hash = 0;
   uint32_t triangle_count = 0;  ///< of the scene
   std::string scene_name;       ///< file name without folder, for people
   std::string device;           ///< on which the bake began: that of the first cell; empty before it
   BakeParams params;
-  bool has_witnesses = false;     ///< every cell has one witness a triangle
+  glm::dvec3 offset{0.0};      ///< Scene::offset: cells and witnesses are less this, the scene's file is not
+  bool has_witnesses = false;  ///< every cell has one witness a triangle
   std::vector<ViewCell> planned;  ///< all cells of the bake, in order; cells holds the first of them
   std::vector<CellPvs> cells;     ///< baked so far; complete when as many as planned
 };

@@ -18,6 +18,7 @@ constexpr size_t kPlannedCellBytes = 4 + 9 * 8;
 /// Bytes of a witness before compression: origin, direction, stage.
 constexpr uint64_t kWitnessBytes = 25;
 constexpr uint32_t kFlagWitnesses = 1;
+constexpr uint32_t kFlagOffset = 2;
 /// Of programs that wrote no revision.
 constexpr uint32_t kFirstAlgorithm = 1;
 
@@ -44,6 +45,17 @@ Value readValue(ByteReader& in, const Param& param, const ParamField<Value>& fie
   } else {
     return in.number<Value>();
   }
+}
+
+/// Three numbers of which one at least is not 0.
+glm::dvec3 readOffset(ByteReader& in) {
+  glm::dvec3 offset;
+  for (int axis = 0; axis < 3; ++axis) {
+    offset[axis] = in.number<double>();
+    require(std::isfinite(offset[axis]), "an offset that is none");
+  }
+  require(offset != glm::dvec3(0.0), "an offset that is none");
+  return offset;
 }
 
 BakeParams readParams(ByteReader& in, uint32_t version) {
@@ -160,11 +172,13 @@ Bytes writeHeadPayload(const PvsFile& pvs) {
   ByteWriter out;
   out.number(pvs.scene_hash);
   out.number(pvs.triangle_count);
-  out.number(pvs.has_witnesses ? kFlagWitnesses : 0u);
+  const bool has_offset = pvs.offset != glm::dvec3(0.0);
+  out.number((pvs.has_witnesses ? kFlagWitnesses : 0u) | (has_offset ? kFlagOffset : 0u));
   out.number(pvs.algorithm);
   writeParams(out, pvs.params);
   out.text(pvs.scene_name);
   out.text(pvs.intersector);
+  for (int axis = 0; has_offset && axis < 3; ++axis) out.number(pvs.offset[axis]);
   out.number(uint32_t(pvs.planned.size()));
   for (const ViewCell& cell : pvs.planned) {
     out.text(cell.name);
@@ -182,7 +196,7 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version) {
   pvs.scene_hash = in.number<uint64_t>();
   pvs.triangle_count = in.number<uint32_t>();
   const auto flags = in.number<uint32_t>();
-  require(flags <= kFlagWitnesses, "unknown flags");
+  require(flags <= (kFlagWitnesses | kFlagOffset), "unknown flags");
   pvs.has_witnesses = (flags & kFlagWitnesses) != 0;
   pvs.algorithm = version < kPvsVersionWithCosts ? kFirstAlgorithm : in.number<uint32_t>();
   pvs.params = readParams(in, version);
@@ -193,6 +207,7 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version) {
   } else {
     pvs.intersector = in.text();
   }
+  if ((flags & kFlagOffset) != 0) pvs.offset = readOffset(in);
   const auto planned = in.number<uint32_t>();
   require(planned <= in.left() / kPlannedCellBytes, "more cells announced than there are");
   pvs.planned.reserve(planned);

@@ -32,7 +32,8 @@ struct Scene {
   std::vector<glm::uvec3> triangles;  ///< indices into positions
   std::vector<SceneObject> objects;
   /// Whole numbers that were taken off the file's coordinates, where floats would not have held those: a
-  /// place in the file is positions[i] + offset. View cells are less it too (CellsInScene).
+  /// place in the file is positions[i] + offset. Cells files have the file's own coordinates: what reads one
+  /// moves its cells by -offset (core/cell/view_cell.h), as bake (core/api/bake.h) does.
   glm::dvec3 offset{0.0};
   uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
   uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or vertex
