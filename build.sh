@@ -27,7 +27,8 @@ readonly mesa_version=25
 usage() {
   cat <<'TEXT'
 usage: ./build.sh demo [--small]   build, bake a generated city, draw pictures of it into out/demo/
-       ./build.sh test [ARGS...]   build and run all tests; ARGS go to ctest, e.g. -R Golden
+       ./build.sh test [ARGS...]   build and run all tests but those under a simulated device (label checker, a
+                                   minute); ARGS go to ctest instead, e.g. -R Golden, -L checker
 
 Both first install the Debian packages that are missing, by apt-get as root or through sudo, and build into build/.
 --small            a city of a twelfth of the triangles, fewer rays: for a slow machine, or CI
@@ -182,6 +183,7 @@ printSlowest() {
 runTests() {
   local result=0 junit="$build/tests.xml"
   say "running the tests"
+  (($# > 0)) || set -- -LE checker
   ctest --preset release -j "$(nproc)" --no-tests=error --output-junit "$junit" "$@" || result=$?
   [[ -f $junit ]] || return "$result"
   printSlowest "$junit"

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
-#include "core/formats/glb_chunks.h"
+#include "core/formats/glb.h"
 #include "core/formats/json_object.h"
 #include "core/formats/json_text.h"
 #include "core/formats/little_word.h"

@@ -7,7 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/formats/draco_stream.h"
-#include "core/formats/glb_chunks.h"
+#include "core/formats/glb.h"
 #include "core/formats/gltf_data.h"
 #include "core/formats/gltf_document.h"
 #include "core/formats/gltf_tree.h"
@@ -274,7 +274,8 @@ class GltfLoader {
     if (instance.copy) name += fmt::format("#{}", *instance.copy);
     if (!mesh_name.empty() && mesh_name != name) name += "/" + mesh_name;
     if (mesh.primitives.size() > 1) name += fmt::format("/{}", primitive);
-    builder_.beginObject(name, name);
+    builder_.beginObject(name, name,
+                         GltfPart{uint32_t(instance.node), uint32_t(instance.mesh), uint32_t(primitive)});
   }
 
   void warn() {
@@ -310,8 +311,8 @@ class GltfLoader {
 
 }  // namespace
 
-Scene loadGltfDocument(const GlbChunks& chunks, const std::filesystem::path& file,
-                       const SceneLoadOptions& options, const GltfWorld& world) {
+Scene loadGltfDocument(const Glb& chunks, const std::filesystem::path& file, const SceneLoadOptions& options,
+                       const GltfWorld& world) {
   const std::string name = file.string();
   uint64_t words = 0;
   GltfDocument document =

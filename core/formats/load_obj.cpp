@@ -186,6 +186,7 @@ class ObjReader {
   }
 
   void face(std::string_view rest) {
+    builder_.nextFace();
     corners_.clear();
     while (const auto word = nextWord(rest)) {
       const std::optional<int64_t> number = cornerNumber(*word);

@@ -198,6 +198,7 @@ class PlyReader {
       if (strips) {
         addStrips(vertices);
       } else {
+        builder_.nextFace();
         builder_.addPolygon(corners_, vertices, [this] { return place(); });
       }
     }
@@ -234,6 +235,7 @@ class PlyReader {
         const bool turned = (i - start) % 2 != 0;
         const int64_t triangle[3] = {corners_[turned ? i - 1 : i - 2], corners_[turned ? i - 2 : i - 1],
                                      corners_[i]};
+        builder_.nextFace();
         builder_.addPolygon(triangle, vertices, [this] { return place(); });
       }
     }

@@ -11,6 +11,8 @@ struct SceneLoadOptions {
   /// Drop triangles with an index out of range or a coordinate that is not finite or too large instead of
   /// failing.
   bool repair = false;
+  /// Fill Scene::faces.
+  bool faces = false;
   /// Extensions that a glTF file may require although they are unknown: it is loaded without what they add.
   std::vector<std::string> ignored_extensions = {};
   /// Read what the scene names (buffers, materials, pictures) wherever it lies, not only in the scene's

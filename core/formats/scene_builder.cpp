@@ -133,8 +133,10 @@ void SceneBuilder::closeObject() {
   object_.first_triangle = end;
 }
 
-void SceneBuilder::beginObject(std::string_view name, const std::string& fallback) {
+void SceneBuilder::beginObject(std::string_view name, const std::string& fallback,
+                               const std::optional<GltfPart>& part) {
   closeObject();
+  object_.part = part;
   object_.name = cleanName(name);
   if (object_.name.empty()) object_.name = fallback;
 }
@@ -163,6 +165,7 @@ bool SceneBuilder::usable(std::span<const int64_t> corners, const VertexRange& v
 void SceneBuilder::addTriangle(const glm::uvec3& triangle, const Place& place) {
   if (scene_.triangles.size() >= kMaxElements) throw Error(fmt::format("{}: too many triangles", place()));
   scene_.triangles.push_back(triangle);
+  if (faces_) scene_.faces.push_back(face_);
 }
 
 void SceneBuilder::addPolygon(std::span<const int64_t> corners, const VertexRange& vertices,

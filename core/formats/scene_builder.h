@@ -42,7 +42,8 @@ class SceneBuilder {
   using Place = std::function<std::string()>;
 
   /// offset: of the scene that is made.
-  SceneBuilder(const SceneLoadOptions& options, const glm::dvec3& offset) : repair_(options.repair) {
+  SceneBuilder(const SceneLoadOptions& options, const glm::dvec3& offset)
+      : repair_(options.repair), faces_(options.faces) {
     scene_.offset = offset;
   }
 
@@ -54,7 +55,11 @@ class SceneBuilder {
   uint64_t positionCount() const { return scene_.positions.size(); }
 
   /// Following triangles belong to an object of that name. An empty or blank name becomes `fallback`.
-  void beginObject(std::string_view name, const std::string& fallback);
+  void beginObject(std::string_view name, const std::string& fallback,
+                   const std::optional<GltfPart>& part = {});
+
+  /// Following triangles are cut from the file's next face (Scene::faces): OBJ and PLY call it before each.
+  void nextFace() { ++face_; }
 
   /// Adds the triangles of a polygon; its vertex numbers count within `vertices`. Bad numbers and fewer than
   /// three corners are errors, or, to repair, dropped and counted.
@@ -88,6 +93,8 @@ class SceneBuilder {
   void closeObject();
 
   bool repair_;
+  bool faces_;
+  uint32_t face_ = ~0u;  ///< wraps to 0 with the first; only faces without triangles can be more than 2^32
   Scene scene_;
   SceneObject object_;
   std::vector<std::pair<uint32_t, glm::vec3>> bad_vertices_;  ///< not finite or too far out; ascending

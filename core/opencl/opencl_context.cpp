@@ -76,13 +76,17 @@ ClBuffer::~ClBuffer() {
   if (total_) *total_ -= bytes_;
 }
 
-OpenClContext::OpenClContext(const std::string& selector) {
-  const OpenClDeviceChoice device = selectOpenClDevice(selector);
-  device_ = device.id;
+OpenClContext::OpenClContext(const std::string& selector) : OpenClContext(selectOpenClDevice(selector)) {}
+
+OpenClContext::OpenClContext(const OpenClDeviceChoice& device) : OpenClContext(device.id) {
   info_ = device.info;
-  is_cpu_ = (device.type & CL_DEVICE_TYPE_CPU) != 0;
-  max_allocation_ = clDeviceValue<cl_ulong>(device_, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
-  memory_limit_ = info_.memory_bytes;
+}
+
+OpenClContext::OpenClContext(cl_device_id device)
+    : device_(device),
+      is_cpu_((clDeviceValue<cl_device_type>(device, CL_DEVICE_TYPE) & CL_DEVICE_TYPE_CPU) != 0),
+      max_allocation_(clDeviceValue<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE)),
+      memory_limit_(clDeviceValue<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE)) {
   cl_int code = CL_SUCCESS;
   context_ =
       ClHandle<cl_context, clReleaseContext>(clCreateContext(nullptr, 1, &device_, nullptr, nullptr, &code));

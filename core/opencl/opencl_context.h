@@ -72,6 +72,8 @@ class ClBuffer {
 /// The names of a kernel's parameters, in order.
 std::vector<std::string> argumentNames(const ClKernel& kernel);
 
+struct OpenClDeviceChoice;
+
 /// One device with its queue and, after build, its program. Commands run in order. Not thread-safe.
 /// Everything throws Error with the name of the call that failed.
 class OpenClContext {
@@ -79,6 +81,9 @@ class OpenClContext {
   /// selector: "opencl" (a GPU if there is a usable one, else a CPU, else whatever), "opencl:INDEX" or
   /// "opencl:PART-OF-NAME" (any case, the first that matches). Throws Error that lists what there is.
   explicit OpenClContext(const std::string& selector);
+
+  /// Of any device, also one that could not run ours; info() is not filled.
+  explicit OpenClContext(cl_device_id device);
 
   const DeviceInfo& info() const { return info_; }
   bool isCpu() const { return is_cpu_; }
@@ -119,6 +124,7 @@ class OpenClContext {
   void finish();
 
  private:
+  explicit OpenClContext(const OpenClDeviceChoice& device);
   template <typename Arg>
   void setArgument(const ClKernel& kernel, cl_uint& index, const Arg& arg) {
     if constexpr (std::is_same_v<Arg, ClBuffer>) {

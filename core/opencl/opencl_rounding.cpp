@@ -88,33 +88,15 @@ bool roundsCorrectly(cl_device_id device, const char* quotient, const char* root
       "  pairs[i] = (float2)({}, {});\n"
       "}}\n",
       quotient, root);
-  const char* text = source.c_str();
-  cl_int code = CL_SUCCESS;
-  const ClHandle<cl_context, clReleaseContext> context(
-      clCreateContext(nullptr, 1, &device, nullptr, nullptr, &code));
-  checkCl(code, "clCreateContext");
-  const ClHandle<cl_command_queue, clReleaseCommandQueue> queue(
-      clCreateCommandQueue(context.get(), device, 0, &code));
-  checkCl(code, "clCreateCommandQueue");
-  const ClHandle<cl_program, clReleaseProgram> program(
-      clCreateProgramWithSource(context.get(), 1, &text, nullptr, &code));
-  checkCl(code, "clCreateProgramWithSource");
-  checkCl(clBuildProgram(program.get(), 1, &device, kClBuildOptions, nullptr, nullptr), "clBuildProgram");
-  const ClKernel kernel(clCreateKernel(program.get(), "tryRounding", &code));
-  checkCl(code, "clCreateKernel");
-  const size_t bytes = pairs.size() * sizeof(float), global = kPairs;
+  OpenClContext context(device);
+  context.build(source.c_str(), kClBuildOptions);
   // In place: a pair becomes its results.
   std::vector<float> results = pairs;
-  const ClHandle<cl_mem, clReleaseMemObject> buffer(
-      clCreateBuffer(context.get(), CL_MEM_READ_WRITE | CL_MEM_COPY_HOST_PTR, bytes, results.data(), &code));
-  checkCl(code, "clCreateBuffer");
-  const cl_mem memory = buffer.get();
-  checkCl(clSetKernelArg(kernel.get(), 0, sizeof memory, &memory), "clSetKernelArg");
-  checkCl(
-      clEnqueueNDRangeKernel(queue.get(), kernel.get(), 1, nullptr, &global, nullptr, 0, nullptr, nullptr),
-      "clEnqueueNDRangeKernel");
-  checkCl(clEnqueueReadBuffer(queue.get(), memory, CL_TRUE, 0, bytes, results.data(), 0, nullptr, nullptr),
-          "clEnqueueReadBuffer");
+  const uint64_t bytes = pairs.size() * sizeof(float);
+  const ClBuffer buffer = context.buffer(bytes, "numbers to try");
+  context.write(buffer, pairs.data(), bytes);
+  context.launch(context.kernel("tryRounding"), kPairs, 0, buffer);
+  context.read(buffer, results.data(), bytes);
   for (size_t i = 0; i < pairs.size(); i += 2) {
     const float expected[] = {pairs[i] / pairs[i + 1], std::sqrt(pairs[i])};
     for (int k = 0; k < 2; ++k) {

@@ -2,12 +2,22 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/extents.h"
 
 namespace sightline {
+
+/// What of a glTF file an object shows: places in the file's lists of nodes and meshes, and in the mesh's
+/// list of primitives. Objects of several nodes may show the same primitive.
+struct GltfPart {
+  uint32_t node = 0;
+  uint32_t mesh = 0;
+  uint32_t primitive = 0;
+  bool operator==(const GltfPart&) const = default;
+};
 
 /// A named run of triangles, at least one. Names are not empty, valid UTF-8 and without control characters;
 /// two objects may have the same. They come from
@@ -20,6 +30,8 @@ struct SceneObject {
   std::string name;
   uint32_t first_triangle = 0;
   uint32_t triangle_count = 0;
+  std::optional<GltfPart> part = {};  ///< glTF only; the object's triangles are then the primitive's, in
+                                      ///< order (without those that --repair dropped)
 };
 
 /// A static scene: nothing but triangles. A triangle's id is its index in `triangles`, which follows file
@@ -31,6 +43,10 @@ struct Scene {
   std::vector<glm::vec3> positions;   ///< world space, y up by custom; units are the file's
   std::vector<glm::uvec3> triangles;  ///< indices into positions
   std::vector<SceneObject> objects;
+  std::vector<uint32_t>
+      faces;  ///< of OBJ and PLY, if loading was asked for them, else empty: the face in its
+              ///< file that each triangle is cut from, counted from 0 through the whole
+              ///< file. OBJ: f and fo statements; PLY: rows of faces, triangles of tristrips
   /// Whole numbers that were taken off the file's coordinates, where floats would not have held those: a
   /// place in the file is positions[i] + offset. Cells files have the file's own coordinates: what reads one
   /// moves its cells by -offset (core/cell/view_cell.h), as bake (core/api/bake.h) does.

@@ -39,7 +39,8 @@ typedef ulong uint64;
 #define SL_SET sl_set
 #define SL_SET_CAPACITY sl_set.capacity
 // OpenCL C 1.2 has no atomic read but one that writes. A volatile read of an aligned word serves as one; a checker that
-// takes it for a race is told by SL_ATOMIC_LOADS (tests/checker).
+// takes it for a race is told by SL_ATOMIC_LOADS (tests/checker): an atomic that writes makes bakes on a processor half
+// as long again.
 #ifdef SL_ATOMIC_LOADS
 #define SL_SET_LOAD(field, i) atomic_or(&sl_set.field[i], 0u)
 #else

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Every OpenCL kernel under Oclgrind: no data race, no memory error, no use of uninitialised memory, and the device cpu's
+# Every OpenCL kernel under Oclgrind: no data race, no memory error, and the device cpu's
 # results. Every kernel of the program must have run.
 # usage: kernels_test.sh RUN_KERNELS
 set -euo pipefail

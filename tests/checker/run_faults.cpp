@@ -22,36 +22,12 @@ __kernel void outOfBounds(volatile __global uint* slots) { slots[get_global_id(0
 )";
 
 void run(const char* name) {
-  cl_platform_id platform = nullptr;
-  cl_device_id device = nullptr;
-  checkCl(clGetPlatformIDs(1, &platform, nullptr), "clGetPlatformIDs");
-  checkCl(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, nullptr), "clGetDeviceIDs");
-  cl_int code = CL_SUCCESS;
-  const ClHandle<cl_context, clReleaseContext> context(
-      clCreateContext(nullptr, 1, &device, nullptr, nullptr, &code));
-  checkCl(code, "clCreateContext");
-  const ClHandle<cl_command_queue, clReleaseCommandQueue> queue(
-      clCreateCommandQueue(context.get(), device, 0, &code));
-  checkCl(code, "clCreateCommandQueue");
-  const char* source = kSource;
-  const ClHandle<cl_program, clReleaseProgram> program(
-      clCreateProgramWithSource(context.get(), 1, &source, nullptr, &code));
-  checkCl(code, "clCreateProgramWithSource");
-  checkCl(clBuildProgram(program.get(), 1, &device, kClBuildOptions, nullptr, nullptr), "clBuildProgram");
-  const ClKernel kernel(clCreateKernel(program.get(), name, &code));
-  checkCl(code, "clCreateKernel");
-  const ClHandle<cl_mem, clReleaseMemObject> buffer(
-      clCreateBuffer(context.get(), CL_MEM_READ_WRITE, kItems * 4, nullptr, &code));
-  checkCl(code, "clCreateBuffer");
-  const cl_mem memory = buffer.get();
-  const cl_uint value = 1000;
-  checkCl(clEnqueueFillBuffer(queue.get(), memory, &value, 4, 0, kItems * 4, 0, nullptr, nullptr),
-          "clEnqueueFillBuffer");
-  checkCl(clSetKernelArg(kernel.get(), 0, sizeof memory, &memory), "clSetKernelArg");
-  const size_t items = kItems, group = 8;
-  checkCl(clEnqueueNDRangeKernel(queue.get(), kernel.get(), 1, nullptr, &items, &group, 0, nullptr, nullptr),
-          "clEnqueueNDRangeKernel");
-  checkCl(clFinish(queue.get()), "clFinish");
+  OpenClContext context("opencl");
+  context.build(kSource, kClBuildOptions);
+  const ClBuffer slots = context.buffer(kItems * 4, "slots");
+  context.fill(slots, 1000, kItems * 4);
+  context.launch(context.kernel(name), kItems, 8, slots);
+  context.finish();
 }
 
 }  // namespace

@@ -173,22 +173,14 @@ void growHashSet(const Scene& scene, const Bvh& bvh) {
 
 /// Prints all kernels that the program has, a line "kernel NAME" each, as the compiler knows them.
 void printKernels() {
-  cl_platform_id platform = nullptr;
-  cl_device_id device = nullptr;
-  checkCl(clGetPlatformIDs(1, &platform, nullptr), "clGetPlatformIDs");
-  checkCl(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &device, nullptr), "clGetDeviceIDs");
-  cl_int code = CL_SUCCESS;
-  const ClHandle<cl_context, clReleaseContext> context(
-      clCreateContext(nullptr, 1, &device, nullptr, nullptr, &code));
-  checkCl(code, "clCreateContext");
-  const char* source = kProgramSource;
-  const ClHandle<cl_program, clReleaseProgram> program(
-      clCreateProgramWithSource(context.get(), 1, &source, nullptr, &code));
-  checkCl(code, "clCreateProgramWithSource");
-  checkCl(clBuildProgram(program.get(), 1, &device, kernelOptions(1).c_str(), nullptr, nullptr),
-          "clBuildProgram");
+  OpenClContext context("opencl");
+  buildKernels(context, 1);
+  const ClKernel kernel = context.kernel("traceRandom");
+  cl_program program = nullptr;
+  checkCl(clGetKernelInfo(kernel.get(), CL_KERNEL_PROGRAM, sizeof program, &program, nullptr),
+          "clGetKernelInfo");
   std::vector<char> names(1 << 16);
-  checkCl(clGetProgramInfo(program.get(), CL_PROGRAM_KERNEL_NAMES, names.size(), names.data(), nullptr),
+  checkCl(clGetProgramInfo(program, CL_PROGRAM_KERNEL_NAMES, names.size(), names.data(), nullptr),
           "clGetProgramInfo");
   std::string name;
   std::istringstream list(names.data());

@@ -1,5 +1,5 @@
 // Based on: Khronos Group, glTF 2.0 Specification, 2021, chapter 4.
-#include "core/formats/glb_chunks.h"
+#include "core/formats/glb.h"
 
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ std::pair<uint32_t, std::string_view> takeChunk(std::string_view bytes, size_t& 
 
 }  // namespace
 
-GlbChunks splitGlb(std::string_view bytes, const std::string& name) {
+Glb splitGlb(std::string_view bytes, const std::string& name) {
   if (bytes.size() < kGlbHeaderBytes || littleWord(bytes, 0) != kGlbMagic) {
     throw Error(fmt::format("{}: is no GLB file: it does not start with \"glTF\" and a header", name));
   }
@@ -41,32 +41,31 @@ GlbChunks splitGlb(std::string_view bytes, const std::string& name) {
         fmt::format("{}: GLB version {}, only 2 is supported; convert the file", name, littleWord(bytes, 4)));
   }
   const size_t length = littleWord(bytes, 8);
-  GlbChunks chunks;
+  Glb glb;
   if (length > bytes.size()) {
     throw Error(fmt::format("{}: the header says {} bytes, the file has {}; is it truncated?", name, length,
                             bytes.size()));
   }
   if (length < kGlbHeaderBytes + kGlbChunkHeaderBytes) {
-    chunks.warnings.push_back(
-        fmt::format("the GLB header says {} bytes; all of the file's are read", length));
+    glb.warnings.push_back(fmt::format("the GLB header says {} bytes; all of the file's are read", length));
   } else {
     bytes = bytes.substr(0, length);
   }
   size_t offset = kGlbHeaderBytes;
   const auto [type, text] = takeChunk(bytes, offset, name);
   if (type != kGlbJson) throw Error(fmt::format("{}: the first chunk is not JSON", name));
-  chunks.json = text;
+  glb.json = text;
   std::string_view unmarked;
   while (offset < bytes.size()) {
     const auto [next_type, next] = takeChunk(bytes, offset, name);
-    if (next_type == kGlbBin && chunks.bin.data() == nullptr) chunks.bin = next;
+    if (next_type == kGlbBin && glb.bin.data() == nullptr) glb.bin = next;
     if (next_type != kGlbBin && unmarked.data() == nullptr) unmarked = next;
   }
-  if (chunks.bin.data() == nullptr && unmarked.data() != nullptr) {
-    chunks.bin = unmarked;
-    chunks.warnings.emplace_back("no GLB chunk is marked as binary; the second is read as if it were");
+  if (glb.bin.data() == nullptr && unmarked.data() != nullptr) {
+    glb.bin = unmarked;
+    glb.warnings.emplace_back("no GLB chunk is marked as binary; the second is read as if it were");
   }
-  return chunks;
+  return glb;
 }
 
 }  // namespace sightline
