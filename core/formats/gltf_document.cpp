@@ -41,6 +41,7 @@ constexpr std::array kLeaveGeometry = {
     "KHR_node_hoverability",
     "KHR_node_selectability",
     "KHR_physics_rigid_bodies",
+    "KHR_technique_webgl",
     "KHR_techniques_webgl",
     "KHR_texture_",
     "KHR_xmp",
@@ -55,7 +56,8 @@ constexpr std::array kLeaveGeometry = {
 };
 
 /// Extensions that change triangles, and are read.
-constexpr std::array kRead = {"EXT_mesh_gpu_instancing",
+constexpr std::array kRead = {"CESIUM_RTC",
+                              "EXT_mesh_gpu_instancing",
                               "EXT_meshopt_compression",
                               "KHR_draco_mesh_compression",
                               "KHR_mesh_quantization",
@@ -71,10 +73,12 @@ bool isKnown(std::string_view extension) {
 }
 
 void checkRequirements(const JsonObject& document, const std::vector<std::string>& ignored) {
-  const std::string version = document.requiredObject("asset").text("version").value_or("");
+  const JsonObject asset = document.requiredObject("asset");
+  const std::string version = asset.isNumber("version") ? fmt::format("{}", *asset.real("version"))
+                                                        : asset.text("version").value_or("");
   if (!version.starts_with("2.")) {
-    document.fail("asset.version",
-                  fmt::format("\"{}\" is not supported, only glTF 2", cleanName(version.substr(0, 20))));
+    document.fail("asset.version", fmt::format("\"{}\" is not supported, only glTF 2; convert the file",
+                                               cleanName(version.substr(0, 20))));
   }
   for (const std::string& extension : document.texts("extensionsRequired")) {
     if (isKnown(extension) || std::find(ignored.begin(), ignored.end(), extension) != ignored.end()) continue;
@@ -354,8 +358,9 @@ GltfNode readNode(const JsonObject& object, const GltfDocument& document, size_t
 
 std::vector<size_t> readRoots(const JsonObject& document, const std::vector<GltfNode>& nodes) {
   const std::vector<JsonObject> scenes = document.objects("scenes");
-  const std::optional<size_t> chosen = document.index("scene", scenes.size());
-  if (!scenes.empty()) return scenes[chosen.value_or(0)].indices("nodes", nodes.size());
+  if (!scenes.empty()) {  // some files name a scene without having one
+    return scenes[document.index("scene", scenes.size()).value_or(0)].indices("nodes", nodes.size());
+  }
   std::vector<bool> is_child(nodes.size(), false);
   for (const GltfNode& node : nodes) {
     for (const size_t child : node.children) is_child[child] = true;
@@ -416,6 +421,9 @@ GltfDocument readGltfDocument(const nlohmann::json& root, const std::string& fil
         fmt::format("nodes whose rotation is a quaternion of zeros, not turned: {}", zero_rotations));
   }
   result.roots = readRoots(document, result.nodes);
+  const auto rtc = extensionOf(document, "CESIUM_RTC");
+  const auto center = rtc ? rtc->numbers("center", 3) : std::nullopt;
+  if (center) result.center = {(*center)[0], (*center)[2], -(*center)[1]};  // it has z up
   return result;
 }
 

@@ -127,6 +127,7 @@ struct GltfDocument {
   std::vector<GltfNode> nodes;
   std::vector<size_t> roots;  ///< nodes of the default scene; the first scene if none is named; without
                               ///< scenes every node that is no other's child
+  glm::dvec3 center{0.0};     ///< of CESIUM_RTC, y up: added to all coordinates
   std::vector<std::string> warnings;
 };
 

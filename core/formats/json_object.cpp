@@ -83,6 +83,11 @@ size_t JsonObject::requiredIndex(const char* key, size_t size) const {
   return *index(key, size);
 }
 
+bool JsonObject::isNumber(const char* key) const {
+  const json* value = find(key);
+  return value != nullptr && value->is_number();
+}
+
 std::optional<double> JsonObject::real(const char* key) const {
   const json* value = find(key);
   if (value == nullptr) return std::nullopt;

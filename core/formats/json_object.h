@@ -27,6 +27,7 @@ class JsonObject {
   /// An index into a list of `size` elements.
   std::optional<size_t> index(const char* key, size_t size) const;
   size_t requiredIndex(const char* key, size_t size) const;
+  bool isNumber(const char* key) const;
   /// Any number.
   std::optional<double> real(const char* key) const;
   std::optional<std::string> text(const char* key) const;

@@ -14,9 +14,23 @@
 namespace sightline {
 namespace {
 
-/// The tables before the glTF, as the header has their lengths.
+/// The tables before the glTF.
 enum Table { kFeatureJson, kFeatureBinary, kBatchJson, kBatchBinary, kTables };
 constexpr size_t kTileHeaderBytes = 28;
+
+/// Where the header has the tables' lengths, and where it ends. Before version 1.0 of the specification it
+/// was shorter, and had no feature table; what stands in the place of a length is text then, '"' at least.
+struct TileHeader {
+  std::array<size_t, kTables> lengths;  ///< 0: there is none
+  size_t bytes;
+};
+constexpr uint32_t kText = 0x22000000;
+
+TileHeader headerOf(std::string_view bytes) {
+  if (littleWord(bytes, 20) >= kText) return {{0, 0, 16, 0}, 20};
+  if (littleWord(bytes, 24) >= kText) return {{0, 0, 12, 16}, 24};
+  return {{12, 16, 20, 24}, kTileHeaderBytes};
+}
 
 struct Tile {
   std::array<std::string_view, kTables> tables;
@@ -33,9 +47,10 @@ Tile splitTile(std::string_view bytes, const std::string& name) {
                             littleWord(bytes, 8), bytes.size()));
   }
   Tile tile;
-  size_t offset = kTileHeaderBytes;
+  const TileHeader header = headerOf(bytes);
+  size_t offset = header.bytes;
   for (size_t i = 0; i < kTables; ++i) {
-    const size_t length = littleWord(bytes, 12 + 4 * i);
+    const size_t length = header.lengths[i] == 0 ? 0 : littleWord(bytes, header.lengths[i]);
     if (length > bytes.size() - offset) {
       throw Error(fmt::format("{}: a table of {} bytes at byte {} is cut off after {}", name, length, offset,
                               bytes.size() - offset));

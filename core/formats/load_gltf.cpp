@@ -28,6 +28,12 @@ constexpr uint64_t kStepsAnObject = 64;    ///< as long as naming and placing it
 constexpr uint64_t kNameBytesAStep = 16;   ///< an object's name is memory too
 constexpr uint64_t kStepsAnInfluence = 8;  ///< to blend four joints' matrices
 
+glm::dmat4 translation(const glm::dvec3& by) {
+  glm::dmat4 matrix(1.0);
+  matrix[3] = glm::dvec4(by, 1.0);
+  return matrix;
+}
+
 class GltfLoader {
  public:
   /// Changes the document: what is compressed gets views of its own.
@@ -40,6 +46,7 @@ class GltfLoader {
         world_(world.parent),
         builder_(options, world.offset),
         vertices_(document, tree_, data, name, builder_) {
+    world_ *= translation(document.center);
     world_[3] -= glm::dvec4(world.offset, 0.0);
   }
 

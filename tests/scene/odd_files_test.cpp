@@ -100,6 +100,8 @@ std::vector<Odd> oddFilesThatLoad() {
          d["materials"] = nullptr;
        })},
       {"a.gltf", broken_lines},
+      {"a.gltf", changed([](json& d) { d["scene"] = 0; })},
+      {"a.ply", replaced(kSquarePly, "element", "Created by Blender3D 247 - www.blender.org\nelement")},
   };
   GltfFile padded = square();
   padded.document["buffers"] = {
@@ -279,9 +281,31 @@ TEST(OddFiles, TilesStandAroundTheirCenter) {
                 middle + glm::dvec3(corner.x, -corner.z, corner.y));
     }
   }
+  // CESIUM_RTC says the same of a glTF alone, whose y stays up.
+  GltfFile rtc = square();
+  rtc.document["extensionsRequired"] = {"CESIUM_RTC"};
+  rtc.document["extensions"]["CESIUM_RTC"]["center"] = {center.x, center.y, center.z};
+  const Scene upright = loadText("a.glb", rtc.glb());
+  EXPECT_EQ(glm::dvec3(upright.positions[2]) + upright.offset,
+            glm::dvec3(center.x + 1, center.z + 1, -center.y));
+  const Scene both = loadText("a.b3dm", tile("", "", rtc.glb()));
+  EXPECT_EQ(glm::dvec3(both.positions[2]) + both.offset, center + glm::dvec3(1, 0, 1));
   const Scene plain = loadText("a.b3dm", tile("", "", glb));
   EXPECT_EQ(plain.positions[2], glm::vec3(1, 0, 1));
   EXPECT_EQ(plain.offset, glm::dvec3(0));
+}
+
+TEST(OddFiles, TilesOfOldVersions) {
+  const std::string glb = square().glb();
+  const auto words = [](const std::vector<uint32_t>& values) { return test::bytesOf(values); };
+  const auto size = uint32_t(glb.size());
+  // Batches, length of the batch table; length of the batch table, of its binary part, batches.
+  for (const std::string& file :
+       {"b3dm" + words({1, 22 + size, 5, 2}) + "{}" + glb, "b3dm" + words({1, 20 + size, 5, 0}) + glb,
+        "b3dm" + words({1, 27 + size, 2, 1, 5}) + "{}?" + glb,
+        "b3dm" + words({1, 24 + size, 0, 0, 5}) + glb}) {
+    EXPECT_EQ(loadText("a.b3dm", file).positions[2], glm::vec3(1, 0, 1)) << file.substr(0, 30);
+  }
 }
 
 TEST(OddFiles, DamagedTiles) {
