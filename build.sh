@@ -12,7 +12,7 @@ readonly build="$root/build"
 readonly packages=(
   cmake g++ ninja-build pkg-config
   libcgal-dev libcli11-dev libdraco-dev libfmt-dev libglm-dev libjs-chart.js libmeshoptimizer-dev libpng-dev libtbb-dev
-  libxxhash-dev libzstd-dev nlohmann-json3-dev
+  libwebp-dev libxxhash-dev libzstd-dev nlohmann-json3-dev
   ocl-icd-opencl-dev opencl-clhpp-headers opencl-headers pocl-opencl-icd
   glslang-tools libvulkan-dev
   libembree-dev libgtest-dev spirv-tools

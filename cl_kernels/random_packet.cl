@@ -42,16 +42,20 @@ static inline void slotOffsets(RandomSegment segment, uint first, uint* offsets)
 }
 
 /// Generates and traces the rays of the slots first .. first + SL_PACKET - 1. offsets: of each ray in the
-/// segment, or kNoTriangle where a slot has none (its hit is a miss).
-static inline void traceSlots(SceneRef scene, RandomSegment segment, Face face, uint4 shifts, uint first,
+/// segment, or kNoTriangle where a slot has none (its hit is a miss). Returns as traceRays does.
+static inline uint traceSlots(SceneRef scene, RandomSegment segment, Face face, uint4 shifts, uint first,
                               uint* offsets, Hit* hits) {
   slotOffsets(segment, first, offsets);
 #if SL_PACKET == 8
   RayPacket rays = randomPacket(segmentFirst(segment), vload8(0, offsets), face, shifts);
-  storeHits(traceLanes(scene, &rays), hits);
+  const HitPacket packet = traceLanes(scene, &rays);
+  storeHits(packet, hits);
+  return packet.glass;
 #else
   hits[0] = missHit();
-  if (offsets[0] == kNoTriangle) return;
-  hits[0] = traceRay(scene, randomRay(segmentFirst(segment), offsets[0], face, shifts));
+  if (offsets[0] == kNoTriangle) return 0u;
+  bool glass = false;
+  hits[0] = traceRay(scene, randomRay(segmentFirst(segment), offsets[0], face, shifts), &glass);
+  return glass ? 1u : 0u;
 #endif
 }

@@ -13,6 +13,7 @@ typedef struct RayPacket {
 typedef struct HitPacket {
   float8 t;
   uint8 triangle;
+  uint glass;  // bits of the lanes that met glass before what ends them, and perhaps of others that met any
 } HitPacket;
 
 /// Bit i: lane i of the mask is set (all bits of it).

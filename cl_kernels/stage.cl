@@ -52,18 +52,7 @@ static inline SetRef setOf(const StageRef* stage) {
 }
 
 static inline Corners cornersOf(const StageRef* stage, uint triangle) {
-  const SceneTriangle record = stage->scene.triangles[stage->place_of[triangle]];
-  Corners corners;
-#if SL_PACKET > 1
-  corners.a = (float3)(record.vertices[0], record.vertices[1], record.vertices[2]);
-  corners.b = (float3)(record.vertices[3], record.vertices[4], record.vertices[5]);
-  corners.c = (float3)(record.vertices[6], record.vertices[7], record.vertices[8]);
-#else
-  corners.a = record.v0.xyz;
-  corners.b = record.v1.xyz;
-  corners.c = record.v2.xyz;
-#endif
-  return corners;
+  return recordCorners(&stage->scene.triangles[stage->place_of[triangle]]);
 }
 
 /// Rays are counted by work-group.

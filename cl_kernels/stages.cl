@@ -1,5 +1,18 @@
 // The sampling stages: generate SL_PACKET rays a work item, trace them together, insert what they hit.
+#include "cl_kernels/glass.cl"
 #include "cl_kernels/stage.cl"
+
+/// Inserts what a lane's ray sees: its hit, and the glass before that where its bit of `glass` is set.
+#if SL_HAS_GLASS
+#define SL_INSERT_SIGHT(ray, lane, index)                               \
+  insertHit(set, met[lane].triangle, (index));                          \
+  if ((glass >> (lane) & 1u) != 0) insertGlass(&stage, (ray), met[lane], (index));
+#else
+#define SL_INSERT_SIGHT(ray, lane, index) insertHit(set, met[lane].triangle, (index));
+#endif
+/// A random ray of the launch's segment, by its offset.
+#define SL_SEGMENT_RAY(offset) \
+  randomRay(segmentFirst(launch.segment), (offset), faces[launch.segment.range.x], launch.shifts)
 
 #define SL_TRACE_RANDOM(X) SL_SET_BUFFERS(X) X(faces)
 __kernel void traceRandom(SL_STAGE_ARGS(SL_TRACE_RANDOM)) {
@@ -8,30 +21,36 @@ __kernel void traceRandom(SL_STAGE_ARGS(SL_TRACE_RANDOM)) {
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   Hit met[SL_PACKET];
   uint offsets[SL_PACKET];
-  traceSlots(stage.scene, launch.segment, faces[launch.segment.range.x], launch.shifts, first, offsets, met);
+  const uint glass =
+      traceSlots(stage.scene, launch.segment, faces[launch.segment.range.x], launch.shifts, first, offsets, met);
   uint traced = 0;
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
-    insertHit(set, met[lane].triangle, launch.segment.batch.x + offsets[lane]);
+    SL_INSERT_SIGHT(SL_SEGMENT_RAY(offsets[lane]), lane, launch.segment.batch.x + offsets[lane])
     traced += offsets[lane] != kNoTriangle ? 1 : 0;
   }
   countRays(&stage, traced);
 }
 
 #define SL_COUNT_MISSING(X) SL_SET_BUFFERS(X) X(faces)
-/// As traceRandom, but only counts the hits outside the set.
+/// As traceRandom, but only counts the rays that see something outside the set.
 __kernel void countMissing(SL_STAGE_ARGS(SL_COUNT_MISSING)) {
   SL_STAGE_PACK(SL_COUNT_MISSING)
   const SetRef set = setOf(&stage);
   const uint first = (uint)get_global_id(0) * SL_PACKET;
   Hit met[SL_PACKET];
   uint offsets[SL_PACKET];
-  traceSlots(stage.scene, launch.segment, faces[launch.segment.range.x], launch.shifts, first, offsets, met);
+  const uint glass =
+      traceSlots(stage.scene, launch.segment, faces[launch.segment.range.x], launch.shifts, first, offsets, met);
   uint traced = 0;
   uint missing = 0;
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
     const uint triangle = met[lane].triangle;
     traced += offsets[lane] != kNoTriangle ? 1 : 0;
-    missing += triangle != kNoTriangle && !isInSet(set, triangle) ? 1 : 0;
+    bool lacks = triangle != kNoTriangle && !isInSet(set, triangle);
+#if SL_HAS_GLASS
+    if (!lacks && (glass >> lane & 1u) != 0) lacks = lacksGlass(&stage, SL_SEGMENT_RAY(offsets[lane]), met[lane]);
+#endif
+    missing += lacks ? 1 : 0;
   }
   if (missing > 0) atomic_add(&counters[kMissingCounter], missing);
   countRays(&stage, traced);
@@ -54,13 +73,13 @@ __kernel void traceBorder(SL_STAGE_ARGS(SL_TRACE_BORDER)) {
     if (lane < count) entry = nextBorderEntry(&stage, entry, first + lane);
     made[lane] = lane < count ? borderRayAt(&stage, entry, first + lane - border_starts[entry]) : noRay();
   }
-  traceRays(stage.scene, made, met);
+  const uint glass = traceRays(stage.scene, made, met);
   uint found = 0;
   uint traced = 0;
   for (uint lane = 0; lane < count; ++lane) {
     traced += hasDirection(made[lane]) ? 1 : 0;
     border_hits[first + lane] = met[lane].triangle;
-    insertHit(set, met[lane].triangle, first + lane + 1);
+    SL_INSERT_SIGHT(made[lane], lane, first + lane + 1)
     found |= (isDiscontinuity(made[lane], met[lane], launch.params) ? 1u : 0u) << lane;
   }
   if (found != 0) atomic_or(&bits[first >> 5], found << (first & 31));
@@ -93,11 +112,11 @@ __kernel void traceGvsBorder(SL_STAGE_ARGS(SL_TRACE_GVS_BORDER)) {
     traced += hasDirection(made[lane]) ? 1 : 0;
   }
   if (traced == 0) return;
-  traceRays(stage.scene, made, met);
+  const uint glass = traceRays(stage.scene, made, met);
   for (uint lane = 0; lane < SL_PACKET; ++lane) {
     if (!hasDirection(made[lane])) continue;
     border_hits[index[lane]] = met[lane].triangle;
-    insertHit(set, met[lane].triangle, index[lane] + 1);
+    SL_INSERT_SIGHT(made[lane], lane, index[lane] + 1)
     const uint entry = launch.border_first + index[lane] / kGvsPositions;
     const Corners t = cornersOf(&stage, entries[entry].origin_triangle.w);
     if (isGvsDiscontinuity(made[lane], met[lane], t.a, t.b, t.c, launch.params)) {
@@ -121,7 +140,9 @@ __kernel void traceReverse(SL_STAGE_ARGS(SL_TRACE_REVERSE)) {
     traced += hasDirection(made[lane]) ? 1 : 0;
   }
   if (traced == 0) return;
-  traceRays(stage.scene, made, met);
-  for (uint lane = 0; lane < SL_PACKET; ++lane) insertHit(set, met[lane].triangle, first + lane + 1);
+  const uint glass = traceRays(stage.scene, made, met);
+  for (uint lane = 0; lane < SL_PACKET; ++lane) {
+    SL_INSERT_SIGHT(made[lane], lane, first + lane + 1)
+  }
   countRays(&stage, traced);
 }

@@ -4,8 +4,10 @@
 #include "cl_kernels/trace_single.cl"
 
 #if SL_PACKET == 1
-static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
-  hits[0] = traceRay(scene, rays[0]);
+static uint traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
+  bool glass = false;
+  hits[0] = traceRay(scene, rays[0], &glass);
+  return glass ? 1u : 0u;
 }
 #endif
 

@@ -24,7 +24,34 @@ typedef struct Packet {
   uint back_x, back_y, back_z;  // 1: the direction is negative
   float8 t;
   uint8 triangle;
+  uint glass;  // as of HitPacket
 } Packet;
+
+#if SL_HAS_SURFACES
+/// A lane's ray as the triangle test has it.
+static inline ShearedRay shearedLane(const Packet* p, uint lane) {
+  ShearedRay ray;
+  ray.origin = vec4(((const float*)&p->origin_x)[lane], ((const float*)&p->origin_y)[lane],
+                    ((const float*)&p->origin_z)[lane], 0.0f);
+  ray.shear = vec4(((const float*)&p->shear_x)[lane], ((const float*)&p->shear_y)[lane],
+                   ((const float*)&p->shear_z)[lane], 0.0f);
+  ray.axes = uvec4(p->axis_x, p->axis_y, p->axis_z, 0u);
+  return ray;
+}
+
+/// Those of the lanes, a bit each, that meet something where they hit the triangle: lane by lane.
+static inline uint lanesThatHold(SceneRef scene, uint surface, __global const float* v, const Packet* p, uint lanes) {
+  uint holding = 0;
+  for (uint left = lanes; left != 0; left &= left - 1) {
+    const uint lane = slLowestBit(left);
+    if (surfaceHolds(scene.surfaces, surface, shearedLane(p, lane), vec3(v[0], v[1], v[2]), vec3(v[3], v[4], v[5]),
+                     vec3(v[6], v[7], v[8]))) {
+      holding |= 1u << lane;
+    }
+  }
+  return holding;
+}
+#endif
 
 static inline float8 preciseDepth8(float8 fax, float8 fay, float8 faz, float8 fbx, float8 fby, float8 fbz,
                                    float8 fcx, float8 fcy, float8 fcz) {
@@ -43,7 +70,8 @@ static inline float8 preciseDepth8(float8 fax, float8 fay, float8 faz, float8 fb
   return convert_float8((mixed | (det == 0.0)) ? (double8)0.0 : depth);
 }
 
-static inline void intersectRecord8(__global const TriangleRecord* record, Packet* p) {
+static inline void intersectRecord8(SceneRef scene, uint place, Packet* p) {
+  __global const TriangleRecord* record = &scene.triangles[place];
   __global const float* vertices = record->vertices;
   float8 az = vertices[p->axis_z] - p->origin_z;
   float8 ax = (vertices[p->axis_x] - p->origin_x) - p->shear_x * az;
@@ -80,6 +108,19 @@ static inline void intersectRecord8(__global const TriangleRecord* record, Packe
   // An infinite t is no hit: p->t starts at infinity, and the id of a miss is the largest.
   int8 closer = (t < p->t) | ((t == p->t) & (id < p->triangle) & (t < as_float(0x7f800000u)));
   int8 hit = inside & (t > 0.0f) & closer;
+#if SL_HAS_SURFACES
+  const uint near = laneBits(inside & (t > 0.0f) & (t <= p->t));
+  if (near == 0) return;
+  const uint surface = scene.surfaces[kSurfaceHeaderWords + place];
+  if ((surface & kSurfaceGlass) != 0) {
+    p->glass |= near;
+    return;
+  }
+  if (surface != 0) {
+    const int8 bits = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
+    hit = hit & (((int8)(int)lanesThatHold(scene, surface, vertices, p, laneBits(hit)) & bits) != 0);
+  }
+#endif
   p->t = hit ? t : p->t;
   p->triangle = hit ? (uint8)id : p->triangle;
 }
@@ -142,7 +183,7 @@ static void tracePacket(SceneRef scene, Packet* p) {
         break;
       }
     }
-    for (uint i = child; i < child + count; ++i) intersectRecord8(&scene.triangles[i], p);
+    for (uint i = child; i < child + count; ++i) intersectRecord8(scene, i, p);
     do {
       if (size == 0) return;
       --size;
@@ -199,6 +240,7 @@ static HitPacket traceLanes(SceneRef scene, const RayPacket* rays) {
   HitPacket hits;
   hits.t = (float8)as_float(0x7f800000u);
   hits.triangle = (uint8)kNoTriangle;
+  hits.glass = 0;
   while (waiting != 0) {
     uint first = 31u - clz(waiting & (0u - waiting));
     uint taken = waiting & lanesLike(first, back_x) & lanesLike(first, back_y) & lanesLike(first, back_z) &
@@ -221,9 +263,11 @@ static HitPacket traceLanes(SceneRef scene, const RayPacket* rays) {
     int8 takes_part = ((int8)(int)taken & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0;
     p.t = takes_part ? (float8)as_float(0x7f800000u) : (float8)-1.0f;
     p.triangle = (uint8)kNoTriangle;
+    p.glass = 0;
     tracePacket(scene, &p);
     hits.t = takes_part ? p.t : hits.t;
     hits.triangle = takes_part ? p.triangle : hits.triangle;
+    hits.glass |= p.glass & taken;
   }
   return hits;
 }
@@ -239,7 +283,8 @@ static inline void storeHits(HitPacket packet, Hit* hits) {
   }
 }
 
-static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
+/// Nearest hits. Returns the bits of the rays that met glass before what ends them, and perhaps of others.
+static uint traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
   RayPacket packet;
 #define SL_LANES(field, a)                                                                      \
   (float8)(rays[0].field.a, rays[1].field.a, rays[2].field.a, rays[3].field.a, rays[4].field.a, \
@@ -251,7 +296,9 @@ static void traceRays(SceneRef scene, const Ray* rays, Hit* hits) {
   packet.direction[1] = SL_LANES(direction, y);
   packet.direction[2] = SL_LANES(direction, z);
 #undef SL_LANES
-  storeHits(traceLanes(scene, &packet), hits);
+  const HitPacket found = traceLanes(scene, &packet);
+  storeHits(found, hits);
+  return found.glass;
 }
 
 #endif

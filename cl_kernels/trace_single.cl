@@ -6,20 +6,48 @@
 // the order (core/shared/triangle.h).
 #include "cl_kernels/scene.cl"
 
-static inline void intersectRecord(__global const SceneTriangle* record, ShearedRay ray, Hit* best) {
+static inline Corners recordCorners(__global const SceneTriangle* record) {
+  Corners corners;
 #if SL_PACKET > 1
   __global const float* v = record->vertices;
-  float t = intersectTriangle(ray, vec3(v[0], v[1], v[2]), vec3(v[3], v[4], v[5]), vec3(v[6], v[7], v[8]));
-  uint id = record->id;
+  corners.a = vec3(v[0], v[1], v[2]);
+  corners.b = vec3(v[3], v[4], v[5]);
+  corners.c = vec3(v[6], v[7], v[8]);
 #else
-  float4 v0 = record->v0;
-  float t = intersectTriangle(ray, v0.xyz, record->v1.xyz, record->v2.xyz);
-  uint id = as_uint(v0.w);
+  corners.a = record->v0.xyz;
+  corners.b = record->v1.xyz;
+  corners.c = record->v2.xyz;
 #endif
-  if (t > 0.0f && (t < best->t || (t == best->t && id < best->triangle))) {
-    best->t = t;
-    best->triangle = id;
+  return corners;
+}
+
+static inline uint recordId(__global const SceneTriangle* record) {
+#if SL_PACKET > 1
+  return record->id;
+#else
+  return as_uint(record->v0.w);
+#endif
+}
+
+/// glass: set where the ray meets glass before the best hit so far.
+static inline void intersectRecord(SceneRef scene, uint place, ShearedRay ray, Hit* best, bool* glass) {
+  const Corners v = recordCorners(&scene.triangles[place]);
+  const uint id = recordId(&scene.triangles[place]);
+  const float t = intersectTriangle(ray, v.a, v.b, v.c);
+#if SL_HAS_SURFACES
+  if (!(t > 0.0f && t <= best->t)) return;
+  const uint surface = scene.surfaces[kSurfaceHeaderWords + place];
+  if ((surface & kSurfaceGlass) != 0) {
+    *glass = true;
+    return;
   }
+  if (t == best->t && id >= best->triangle) return;
+  if (!surfaceHolds(scene.surfaces, surface, ray, v.a, v.b, v.c)) return;
+#else
+  if (!(t > 0.0f && (t < best->t || (t == best->t && id < best->triangle)))) return;
+#endif
+  best->t = t;
+  best->triangle = id;
 }
 
 /// Where a walk goes on: an inner node by its index, or a leaf in a word (core/shared/bvh_node.h).
@@ -45,13 +73,14 @@ static inline uint popPlace(const uint2* stack, uint* size, float t) {
   return entry.y;
 }
 
-static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best) {
+static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best, bool* glass) {
   const uint first = leaf & kLeafFirstMask;
   const uint count = (leaf >> kLeafCountShift & 7u) + 1;
-  for (uint i = 0; i < count; ++i) intersectRecord(&scene.triangles[first + i], ray, best);
+  for (uint i = 0; i < count; ++i) intersectRecord(scene, first + i, ray, best, glass);
 }
 
-static Hit traceRay(SceneRef scene, Ray ray) {
+/// glass: set where the ray meets glass before what ends it, and perhaps where only behind.
+static Hit traceRay(SceneRef scene, Ray ray, bool* glass) {
   Hit best = missHit();
   if (!hasDirection(ray)) return best;
   const BoxRay box_ray = boxRay(ray, scene.reach);
@@ -87,7 +116,7 @@ static Hit traceRay(SceneRef scene, Ray ray) {
       }
     }
     while (leaf != SL_NO_LEAF) {
-      intersectLeaf(scene, leaf, sheared, &best);
+      intersectLeaf(scene, leaf, sheared, &best, glass);
       leaf = SL_NO_LEAF;
       if (isLeaf(place)) {
         leaf = place;

@@ -19,6 +19,7 @@ SL_STRUCT(VulkanLaunch) {
   uint64 part_starts;  ///< uint[]: first leaf of each bottom-level structure
   uint64 leaf_ids;     ///< uint[]: leaf -> triangle id
   uint64 corners;      ///< float[9] a leaf
+  uint64 surfaces;     ///< uint[]: core/shared/surface.h, in leaf order; 0: all are opaque from both sides
   // Hemicubes.
   uint64 hemicube;         ///< ViewFrame[5] of the hemicube that is drawn
   uint64 hemicubes;        ///< ViewFrame[5] a hemicube of the batch that is collected; 0: it was traced

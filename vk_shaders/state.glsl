@@ -32,7 +32,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Buffer_Reve
 layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Buffer_Ray {
   Ray at[];
 };
-layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer Buffer_Hit {
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Buffer_Hit {
   Hit at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Buffer_ViewFrame {
@@ -62,6 +62,12 @@ layout(push_constant, scalar) uniform Push {
 /// The arguments of the set's and of the stages' functions, which GLSL does not need.
 const uint kTheSet = 0u;
 const uint kTheStage = 0u;
+
+#undef SL_SURFACE_WORD
+#define SL_SURFACE_WORD(i) Buffer_uint(SL_THE_LAUNCH.surfaces).at[i]
+#include "core/shared/surface.h"
+/// The argument of its functions, likewise.
+const uint kTheSurfaces = 0u;
 
 /// Corner 0, 1 or 2 of the triangle in a leaf.
 vec3 leafCorner(uint leaf, uint corner) {

@@ -1,5 +1,6 @@
 // The sampling stages' main function and their way to the nearest hit: a ray generation shader of a ray
-// tracing pipeline, or, with SL_RAY_QUERY, ray queries in a compute shader.
+// tracing pipeline, or, with SL_RAY_QUERY, ray queries in a compute shader. SL_HAS_SURFACES, only with ray queries:
+// the scene has holes, glass or sides; SL_HAS_GLASS: it has glass.
 #extension GL_GOOGLE_include_directive : require
 #if SL_RAY_QUERY
 #extension GL_EXT_ray_query : require
@@ -27,11 +28,38 @@ uint itemIndex() {
   return gl_GlobalInvocationID.x;
 }
 
+#if SL_HAS_SURFACES
+/// Whether the last ray met glass before what ended it, and perhaps where it met any.
+bool met_glass;
+const uint kTracedFlags = gl_RayFlagsNoneEXT;
+
+uint surfaceOfLeaf(uint leaf) {
+  return SL_SURFACE_WORD(kSurfaceHeaderWords + leaf);
+}
+
+/// Whether a ray that the driver says hits the leaf's triangle meets something there.
+bool leafHolds(Ray ray, uint leaf) {
+  return surfaceHolds(kTheSurfaces, surfaceOfLeaf(leaf), shearRay(ray), leafCorner(leaf, 0u), leafCorner(leaf, 1u),
+                      leafCorner(leaf, 2u));
+}
+#else
+const uint kTracedFlags = gl_RayFlagsOpaqueEXT;
+#endif
+
 LeafHit traceNearest(Ray ray) {
   rayQueryEXT query;
-  rayQueryInitializeEXT(query, accelerationStructureEXT(SL_THE_LAUNCH.tlas), gl_RayFlagsOpaqueEXT, 0xffu,
-                        ray.origin.xyz, 0.0f, ray.direction.xyz, kFarthest);
+  rayQueryInitializeEXT(query, accelerationStructureEXT(SL_THE_LAUNCH.tlas), kTracedFlags, 0xffu, ray.origin.xyz,
+                        0.0f, ray.direction.xyz, kFarthest);
   while (rayQueryProceedEXT(query)) {
+#if SL_HAS_SURFACES
+    uint leaf = leafOf(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
+                       rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+    if ((surfaceOfLeaf(leaf) & kSurfaceGlass) != 0u) {
+      met_glass = true;
+    } else if (leafHolds(ray, leaf)) {
+      rayQueryConfirmIntersectionEXT(query);
+    }
+#endif
   }
   if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
     return LeafHit(0.0f, kNoTriangle);
@@ -60,6 +88,9 @@ LeafHit traceNearest(Ray ray) {
 
 /// Nearest hit of a ray, by leaf; a ray without direction hits nothing.
 LeafHit nearestHit(Ray ray) {
+#if SL_HAS_SURFACES
+  met_glass = false;
+#endif
   if (!hasDirection(ray)) return LeafHit(0.0f, kNoTriangle);
   return traceNearest(ray);
 }
@@ -74,6 +105,58 @@ Hit nearestTriangle(Ray ray) {
   Hit hit;
   hit.t = nearest.t;
   hit.triangle = triangleOf(nearest);
+  return hit;
+}
+
+#if SL_HAS_GLASS
+/// What becomes of glass that a ray meets: into the set under the ray's index, whether the set lacks any, or ray and
+/// triangle into `indices`, as many as list_end.
+const uint kInsertGlass = 0u;
+const uint kTestGlass = 1u;
+const uint kListGlass = 2u;
+
+/// true: the set lacks the triangle.
+bool visitGlass(uint action, uint index, uint triangle) {
+  if (action == kTestGlass) return !isInSet(kTheSet, triangle);
+  if (action == kInsertGlass) {
+    insertHit(kTheSet, triangle, index);
+    return false;
+  }
+  uint place = SL_STAGE_ADD(counters, kListCounter, 1u);
+  if (place < SL_LAUNCH(list_end)) {
+    SL_BUFFER(indices, 2u * place) = index;
+    SL_BUFFER(indices, 2u * place + 1u) = triangle;
+  }
+  return false;
+}
+
+/// Visits the glass that a ray meets no farther than its hit, some perhaps several times. true: kTestGlass found some
+/// that the set lacks.
+bool walkGlass(uint action, uint index, Ray ray, Hit hit) {
+  if (!hasDirection(ray)) return false;
+  float end = hit.triangle == kNoTriangle ? kFarthest : hit.t;
+  float beyond = end < kFarthest ? uintBitsToFloat(floatBitsToUint(end) + 1u) : end;
+  bool lacks = false;
+  rayQueryEXT query;
+  rayQueryInitializeEXT(query, accelerationStructureEXT(SL_THE_LAUNCH.tlas), gl_RayFlagsCullOpaqueEXT, 0xffu,
+                        ray.origin.xyz, 0.0f, ray.direction.xyz, beyond);
+  while (rayQueryProceedEXT(query)) {
+    uint leaf = leafOf(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
+                       rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+    if ((surfaceOfLeaf(leaf) & kSurfaceGlass) == 0u || rayQueryGetIntersectionTEXT(query, false) > end) continue;
+    if (leafHolds(ray, leaf) && visitGlass(action, index, Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[leaf])) lacks = true;
+  }
+  return lacks;
+}
+#endif
+
+/// Traces a ray and inserts what it sees under its index.
+Hit insertSight(Ray ray, uint index) {
+  Hit hit = nearestTriangle(ray);
+  insertHit(kTheSet, hit.triangle, index);
+#if SL_HAS_GLASS
+  if (met_glass) walkGlass(kInsertGlass, index, ray, hit);
+#endif
   return hit;
 }
 

@@ -7,9 +7,8 @@
 void runItem(uint index) {
   if (index >= SL_BUFFER(border_starts, SL_LAUNCH(border_count))) return;
   Ray ray = borderRayByIndex(index);
-  Hit hit = nearestTriangle(ray);
+  Hit hit = insertSight(ray, index + 1u);
   SL_BUFFER(border_hits, index) = hit.triangle;
-  insertHit(kTheSet, hit.triangle, index + 1u);
   if (isDiscontinuity(ray, hit, SL_LAUNCH(params))) {
     atomicOr(SL_BUFFER(bits, index >> 5), 1u << (index & 31u));
   }

@@ -16,9 +16,8 @@ void runItem(uint slot) {
   Ray ray = borderRayAt(kTheStage, entry, position);
   if (!hasDirection(ray)) return;
   uint index = first + position;
-  Hit hit = nearestTriangle(ray);
+  Hit hit = insertSight(ray, index + 1u);
   SL_BUFFER(border_hits, index) = hit.triangle;
-  insertHit(kTheSet, hit.triangle, index + 1u);
   Corners t = cornersOf(SL_BUFFER(entries, SL_LAUNCH(border_first) + entry).origin_triangle.w);
   if (isGvsDiscontinuity(ray, hit, t.a, t.b, t.c, SL_LAUNCH(params))) {
     atomicOr(SL_BUFFER(bits, index >> 5), 1u << (index & 31u));

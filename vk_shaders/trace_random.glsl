@@ -7,6 +7,6 @@ void runItem(uint slot) {
   uint offset;
   Ray ray;
   if (!slotRayAt(slot, offset, ray)) return;
-  insertHit(kTheSet, triangleOf(nearestHit(ray)), SL_LAUNCH(segment).batch.x + offset);
+  insertSight(ray, SL_LAUNCH(segment).batch.x + offset);
   countRay(slot);
 }

@@ -6,6 +6,6 @@
 void runItem(uint index) {
   Ray ray = reverseRayAt(kTheStage, index);
   if (!hasDirection(ray)) return;
-  insertHit(kTheSet, triangleOf(nearestHit(ray)), index + 1u);
+  insertSight(ray, index + 1u);
   countRay(index);
 }

@@ -59,6 +59,8 @@ SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t has
           scene.glass_triangles,
           scene.single_sided_triangles,
           scene.hidden_nodes,
+          scene.opaque_mask_triangles,
+          countSurfaces(scene.surfaces),
           scene.warnings,
           scene.offset};
 }
@@ -108,9 +110,10 @@ std::string reportJson(const BakeReport& report) {
 std::vector<std::string> sceneWarnings(const SceneSummary& scene) {
   std::string materials;
   const auto add = [&](const std::string& what) { materials += (materials.empty() ? "" : "; ") + what; };
-  if (scene.alpha != 0) add(fmt::format("{} triangles with alpha are traced as opaque", scene.alpha));
-  if (scene.glass != 0) add(fmt::format("{} triangles of glass are traced as opaque", scene.glass));
-  if (scene.single_sided != 0) {
+  if (scene.opaque_masks != 0) {
+    add(fmt::format("{} triangles with masks are traced as opaque", scene.opaque_masks));
+  }
+  if (scene.single_sided != 0 && scene.surfaces.front_only == 0) {
     add(fmt::format("{} single-sided triangles are traced as two-sided", scene.single_sided));
   }
   std::vector<std::string> warnings = scene.warnings;

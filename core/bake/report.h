@@ -29,6 +29,8 @@ struct SceneSummary {
   uint64_t hash = 0;
   uint64_t triangles = 0, vertices = 0, objects = 0;
   uint64_t degenerate = 0, repaired = 0, alpha = 0, glass = 0, single_sided = 0, hidden_nodes = 0;
+  uint64_t opaque_masks = 0;  ///< triangles whose masks were loaded as opaque
+  SurfaceCounts surfaces;     ///< what rays meet that does not simply end them
   std::vector<std::string> warnings;  ///< of loading (Scene)
   glm::dvec3 offset{0.0};             ///< of the scene
 };
@@ -59,8 +61,8 @@ std::vector<CellWarning> warningsOf(const BakeReport& report, size_t index);
 /// The JSON text, keys as docs/report.md says.
 std::string reportJson(const BakeReport& report);
 
-/// A line each for what is traced as something simpler than the file says (alpha and glass as opaque,
-/// single-sided as two-sided), for nodes left out, and for each warning of loading; empty if there is
+/// A line each for what is traced as something simpler than the file says (masks as opaque, single-sided as
+/// two-sided, each only by the options of loading), for nodes left out, and for each warning of loading; empty if there is
 /// nothing.
 std::vector<std::string> sceneWarnings(const SceneSummary& scene);
 

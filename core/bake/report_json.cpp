@@ -18,6 +18,11 @@ Json toJson(const SceneSummary& scene) {
           {"single_sided_triangles", scene.single_sided},
           {"hidden_nodes", scene.hidden_nodes},
           {"offset", {scene.offset.x, scene.offset.y, scene.offset.z}},
+          {"surfaces",
+           {{"masked_triangles", scene.surfaces.masked},
+            {"see_through_triangles", scene.surfaces.glass},
+            {"front_only_triangles", scene.surfaces.front_only},
+            {"opaque_mask_triangles", scene.opaque_masks}}},
           {"warnings", scene.warnings}};
 }
 

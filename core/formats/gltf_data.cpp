@@ -117,13 +117,16 @@ std::span<const uint8_t> GltfData::buffer(size_t index) {
     if (index != 0 || bin_.data() == nullptr) throw Error(fmt::format("{}: is missing", place));
     bytes.data = bin_;
   } else {
-    bytes.own = buffer.uri->starts_with("data:") ? readDataUri(*buffer.uri, place)
-                                                 : readBesides(*buffer.uri, file_, allow_external_, place);
+    bytes.own = resource(*buffer.uri, place);
     bytes.data = bytes.own;
   }
   bytes.data = bytes.data.first(std::min<uint64_t>(bytes.data.size(), buffer.byte_length));
   bytes.loaded = true;
   return bytes.data;
+}
+
+std::vector<uint8_t> GltfData::resource(const std::string& uri, const std::string& place) const {
+  return uri.starts_with("data:") ? readDataUri(uri, place) : readBesides(uri, file_, allow_external_, place);
 }
 
 uint64_t GltfData::bytesOfUris() const {

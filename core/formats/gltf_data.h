@@ -25,6 +25,8 @@ class GltfData {
 
   /// Adds a view of these bytes to the document, which must be the one that this was made with.
   size_t addView(GltfDocument& document, std::vector<uint8_t> bytes);
+  /// Bytes that a uri names, in it or in a file beside the document. place: of the uri. Throws Error.
+  std::vector<uint8_t> resource(const std::string& uri, const std::string& place) const;
 
   /// Of the buffers loaded so far that are not the GLB's chunk.
   uint64_t bytesOfUris() const;

@@ -192,18 +192,6 @@ GltfAccessor readAccessor(const JsonObject& object, size_t views) {
   return accessor;
 }
 
-std::vector<GltfMaterial> readMaterials(const JsonObject& document) {
-  std::vector<GltfMaterial> materials;
-  for (const JsonObject& object : document.objects("materials")) {
-    const std::string mode = object.text("alphaMode").value_or("OPAQUE");
-    const auto transmission = extensionOf(object, "KHR_materials_transmission");
-    // A texture only takes some of the factor away, which is 0 unless the file says otherwise.
-    const bool glass = transmission && transmission->real("transmissionFactor").value_or(0.0) > 0.0;
-    materials.push_back({mode == "MASK" || mode == "BLEND", glass, object.boolean("doubleSided", false)});
-  }
-  return materials;
-}
-
 /// JOINTS_n and WEIGHTS_n for n = 0, 1, ...
 void readInfluences(const JsonObject& attributes, size_t accessors, GltfPrimitive& primitive) {
   for (size_t set = 0;; ++set) {
@@ -229,8 +217,10 @@ std::optional<GltfDraco> readDraco(const JsonObject& object, const JsonObject& a
   draco.view = extension->requiredIndex("bufferView", document.views.size());
   const JsonObject numbers = extension->requiredObject("attributes");
   for (const std::string& name : numbers.keys()) {
-    if (name != "POSITION" && !name.starts_with("JOINTS_") && !name.starts_with("WEIGHTS_")) continue;
     const auto accessor = attributes.index(name.c_str(), document.accessors.size());
+    const bool is_mask_uv = accessor && accessor == primitive.mask_uv;
+    if (name != "POSITION" && !name.starts_with("JOINTS_") && !name.starts_with("WEIGHTS_") && !is_mask_uv)
+      continue;
     const uint64_t number = numbers.requiredNumber(name.c_str());
     if (number > 0xffffffff) numbers.fail(name, "expected a number below 2^32");
     if (accessor && !has_data(accessor)) draco.attributes.emplace_back(*accessor, uint32_t(number));
@@ -252,6 +242,10 @@ GltfPrimitive readPrimitive(const JsonObject& object, const GltfDocument& docume
   if (primitive.mode > 6) object.fail("mode", "expected 0 to 6");
   const auto material = object.index("material", materials.size());
   if (material) primitive.material = materials[*material];
+  if (primitive.material.texture) {
+    const std::string uv = fmt::format("TEXCOORD_{}", primitive.material.texture->uv_set);
+    primitive.mask_uv = attributes.index(uv.c_str(), accessors);
+  }
   for (const JsonObject& target : object.objects("targets")) {
     primitive.targets.push_back(target.index("POSITION", accessors));
   }
@@ -404,6 +398,9 @@ GltfDocument readGltfDocument(const nlohmann::json& root, const std::string& fil
     result.accessors.push_back(readAccessor(object, result.views.size()));
   }
   const std::vector<GltfMaterial> materials = readMaterials(document);
+  if (std::ranges::any_of(materials, [](const GltfMaterial& m) { return m.texture && m.texture->image; })) {
+    result.images = readImages(document, result.views.size());
+  }
   for (const JsonObject& object : document.objects("meshes")) {
     result.meshes.push_back(readMesh(object, result, materials));
   }

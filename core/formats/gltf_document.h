@@ -6,10 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "core/formats/gltf_materials.h"
+
 namespace sightline {
 
 // What geometry needs of a glTF 2.0 document, with defaults filled in and every index in range. Names follow
-// the format's own. Textures, animations, cameras and lights are not looked at.
+// the format's own. Of textures only those of alpha masks are looked at; animations, cameras and lights are
+// not.
 
 struct GltfBuffer {
   std::optional<std::string> uri;  ///< without: the GLB's chunk, or a place holder for compressed views
@@ -67,12 +70,6 @@ struct GltfAccessor {
   std::optional<GltfSparse> sparse;
 };
 
-struct GltfMaterial {
-  bool alpha = false;  ///< alphaMode MASK or BLEND
-  bool glass = false;  ///< KHR_materials_transmission lets light through
-  bool double_sided = false;
-};
-
 /// KHR_draco_mesh_compression: a stream that stands for accessors without data of their own.
 struct GltfDraco {
   size_t view = 0;
@@ -83,6 +80,7 @@ struct GltfPrimitive {
   std::optional<size_t> positions;  ///< accessor
   std::optional<size_t> indices;    ///< accessor
   GltfMaterial material;
+  std::optional<size_t> mask_uv;               ///< accessor: TEXCOORD_n of the material's alpha texture
   std::vector<std::optional<size_t>> targets;  ///< accessor of each morph target's POSITION
   std::vector<size_t> joints, weights;         ///< accessors JOINTS_0, ..., WEIGHTS_0, ...: as many of either
   std::optional<GltfDraco> draco;              ///< only where an accessor needs it
@@ -122,6 +120,7 @@ struct GltfDocument {
   std::vector<GltfBuffer> buffers;
   std::vector<GltfBufferView> views;
   std::vector<GltfAccessor> accessors;
+  std::vector<GltfImage> images;
   std::vector<GltfMesh> meshes;
   std::vector<GltfSkin> skins;
   std::vector<GltfNode> nodes;

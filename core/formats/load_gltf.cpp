@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/formats/draco_stream.h"
 #include "core/formats/glb.h"
+#include "core/formats/gltf_alpha.h"
 #include "core/formats/gltf_data.h"
 #include "core/formats/gltf_document.h"
 #include "core/formats/gltf_tree.h"
@@ -43,9 +44,11 @@ class GltfLoader {
         file_bytes_(file_bytes),
         data_(data),
         name_(name),
+        opaque_masks_(options.opaque_masks),
         world_(world.parent),
         builder_(options, world.offset),
-        vertices_(document, tree_, data, name, builder_) {
+        vertices_(document, tree_, data, name, builder_),
+        alpha_(document, data, name, options, builder_.surfaces()) {
     world_ *= translation(document.center);
     world_[3] -= glm::dvec4(world.offset, 0.0);
   }
@@ -141,6 +144,16 @@ class GltfLoader {
     its.sparse.reset();
   }
 
+  /// Vertices of masked primitives get places in the mask's image, a list a primitive.
+  void spendOnPlaces() {
+    for (const GltfMesh& mesh : document_.meshes) {
+      for (const GltfPrimitive& primitive : mesh.primitives) {
+        if (hasTriangles(primitive) && primitive.mask_uv)
+          spend(document_.accessors[*primitive.positions].count);
+      }
+    }
+  }
+
   /// Of sources that were checked, so that no count is larger than its data allows.
   void spendOnVertices(const std::set<GltfVertexSource>& sources) {
     for (const GltfVertexSource& source : sources) {
@@ -179,6 +192,7 @@ class GltfLoader {
     for (const GltfVertexSource& source : sources) vertices_.check(source);
     for (const size_t accessor : index_accessors) checkIndices(accessor);
     spendOnVertices(sources);
+    spendOnPlaces();
     spend(triangles);
     builder_.reserve(positions, triangles);
   }
@@ -204,6 +218,8 @@ class GltfLoader {
     beginObject(instance, index);
     const GltfVertexRun& vertices = vertices_.add(vertices_.source(instance, primitive));
     if (document_.nodes[instance.node].skin && primitive.joints.empty()) ++unbound_;
+    surface_ = &alpha_.surface(instance.mesh, index);
+    builder_.beginSurface(surface_->flags);
     const uint64_t before = builder_.triangleCount();
     const uint64_t elements = elementCount(primitive);
     const std::string place = fmt::format("{}: meshes[{}].primitives[{}]", name_, instance.mesh, index);
@@ -220,8 +236,11 @@ class GltfLoader {
       addTriangles(primitive.mode, elements, vertices, place, [](uint64_t i) { return i; });
     }
     const uint64_t added = builder_.triangleCount() - before;
-    if (primitive.material.alpha) builder_.countAlpha(added);
-    if (primitive.material.glass && !primitive.material.alpha) builder_.countGlass(added);
+    const bool alpha = primitive.material.alpha != GltfMaterial::Alpha::kOpaque;
+    if (alpha) builder_.countAlpha(added);
+    if (primitive.material.alpha == GltfMaterial::Alpha::kMask && opaque_masks_)
+      builder_.countOpaqueMasks(added);
+    if (primitive.material.glass && !alpha) builder_.countGlass(added);
     if (!primitive.material.double_sided) builder_.countSingleSided(added);
   }
 
@@ -244,7 +263,11 @@ class GltfLoader {
     const SceneBuilder::Place place = [&] { return fmt::format("{}, triangle {}", where, triangle); };
     const auto add = [&](int64_t a, int64_t b, int64_t c) {
       if (vertices.isMirrored(a)) std::swap(b, c);
+      const uint64_t before = builder_.triangleCount();
       builder_.addPolygon(std::array{a, b, c}, vertices.range, place);
+      if (surface_->mask && builder_.triangleCount() > before) {
+        builder_.surfaceOfLast(alpha_.addTriangle(*surface_, a, b, c));
+      }
     };
     if (mode == 4) {
       for (; triangle < count; ++triangle) {
@@ -308,12 +331,15 @@ class GltfLoader {
   uint64_t steps_ = 0;
   GltfData& data_;
   const std::string& name_;
+  const bool opaque_masks_;
   glm::dmat4 world_;  ///< from the document's space to the scene's
   SceneBuilder builder_;
   GltfTree tree_;
   GltfVertices vertices_;
-  uint64_t other_counts_ = 0;  ///< accessors whose Draco stream has another count
-  uint64_t unbound_ = 0;       ///< primitives of skinned nodes without joints
+  GltfAlpha alpha_;
+  const GltfSurface* surface_ = nullptr;  ///< of the primitive in work
+  uint64_t other_counts_ = 0;             ///< accessors whose Draco stream has another count
+  uint64_t unbound_ = 0;                  ///< primitives of skinned nodes without joints
 };
 
 }  // namespace

@@ -101,7 +101,7 @@ class ObjReader {
       all_vertices_known_ = true;
       parse(false, true);
     }
-    countGlass();
+    markGlass();
     warnOfUnread();
     return builder_.finish(name_);
   }
@@ -115,10 +115,11 @@ class ObjReader {
     object_.clear();
     group_.clear();
     libraries_.clear();
-    triangles_of_.clear();
-    material_triangles_ = nullptr;
+    runs_of_.clear();
+    material_runs_ = nullptr;
     free_form_ = unknown_ = {};
     if (faces) builder_.beginObject("", kUnnamed);
+    builder_.beginSurface(options_.cull_back_faces ? kSurfaceFrontOnly : 0u);
     while (lines.next()) {
       std::string_view rest = lines.line();
       const std::string_view keyword = takeWord(rest);
@@ -170,7 +171,7 @@ class ObjReader {
       group_ = cleanName(group_);
       beginObject();
     } else if (keyword == "usemtl") {
-      material_triangles_ = &triangles_of_[std::string(trimmed(rest))];
+      material_runs_ = &runs_of_[std::string(trimmed(rest))];
     } else if (keyword == "mtllib") {
       libraries_.emplace_back(trimmed(rest));
     } else if (contains(kFreeForm, keyword)) {
@@ -201,7 +202,13 @@ class ObjReader {
     const VertexRange vertices{0, int64_t(builder_.positionCount()), 1};
     const uint64_t before = builder_.triangleCount();
     builder_.addPolygon(corners_, vertices, [this] { return place(); });
-    if (material_triangles_ != nullptr) *material_triangles_ += builder_.triangleCount() - before;
+    if (material_runs_ == nullptr) return;
+    const uint64_t count = builder_.triangleCount() - before;
+    if (!material_runs_->empty() && material_runs_->back().first + material_runs_->back().second == before) {
+      material_runs_->back().second += count;
+    } else {
+      material_runs_->emplace_back(before, count);
+    }
   }
 
   /// `number` as in the file: from 1, or from the last vertex back for negative ones; 0 is bad.
@@ -229,9 +236,10 @@ class ObjReader {
     return files;
   }
 
-  /// Materials are read for the count of see-through triangles alone, so a missing file is no error.
-  void countGlass() {
-    if (triangles_of_.empty()) return;
+  /// Materials are read for what one sees through alone. A missing file is no error: many OBJ files come
+  /// without theirs.
+  void markGlass() {
+    if (runs_of_.empty()) return;
     std::set<std::string, std::less<>> see_through;
     std::vector<std::string> problems;
     std::set<std::string> names;
@@ -248,7 +256,13 @@ class ObjReader {
       }
     }
     uint64_t triangles = 0;
-    for (const auto& [name, count] : triangles_of_) triangles += see_through.contains(name) ? count : 0;
+    for (const auto& [name, runs] : runs_of_) {
+      if (!see_through.contains(name)) continue;
+      for (const auto& [first, count] : runs) {
+        builder_.addToSurfaces(first, count, kSurfaceGlass);
+        triangles += count;
+      }
+    }
     builder_.countGlass(triangles);
     if (problems.empty()) return;
     builder_.warn(fmt::format(
@@ -282,9 +296,10 @@ class ObjReader {
   std::string object_;
   std::string group_;
   std::vector<int64_t> corners_;
-  std::vector<std::string> libraries_;            ///< what mtllib statements say
-  std::map<std::string, uint64_t> triangles_of_;  ///< by material
-  uint64_t* material_triangles_ = nullptr;        ///< the count of the material in use
+  std::vector<std::string> libraries_;                      ///< what mtllib statements say
+  using Runs = std::vector<std::pair<uint64_t, uint64_t>>;  ///< of triangles: first and count
+  std::map<std::string, Runs> runs_of_;                     ///< by material
+  Runs* material_runs_ = nullptr;                           ///< of the material in use
   Unread free_form_, unknown_;
 };
 

@@ -98,7 +98,9 @@ class PlyReader {
       : name_(name),
         header_(readPlyHeader(bytes, name)),
         numbers_(bytes.substr(header_.data_offset), header_.format),
-        builder_(options, offset) {}
+        builder_(options, offset) {
+    if (options.cull_back_faces) builder_.beginSurface(kSurfaceFrontOnly);
+  }
 
   Scene read(const std::string& object) {
     builder_.beginObject(object, "ply");

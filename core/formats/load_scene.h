@@ -11,6 +11,11 @@ struct SceneLoadOptions {
   /// Drop triangles with an index out of range or a coordinate that is not finite or too large instead of
   /// failing.
   bool repair = false;
+  /// Take glTF's alpha masks as opaque, without a look at their textures.
+  bool opaque_masks = false;
+  /// Triangles that only have a front are not there from behind: those of glTF materials that are not
+  /// double-sided; of OBJ and PLY, whose files do not say, all.
+  bool cull_back_faces = false;
   /// Fill Scene::faces.
   bool faces = false;
   /// Extensions that a glTF file may require although they are unknown: it is loaded without what they add.
@@ -23,10 +28,10 @@ struct SceneLoadOptions {
 /// Loads OBJ, glTF 2.0 (.gltf, .glb), PLY, or a 3D Tile (.b3dm): by what the file holds, and where that does
 /// not show (OBJ), by extension, any case. Polygons are triangulated, concave ones too. glTF: the default
 /// scene with its nodes' transforms; skins in the pose of their joints, morph targets with their default
-/// weights; mirrored nodes keep their front (the corners' order is turned). Materials count, textures are not
-/// touched. Coordinates are read in double; where floats would not hold them, Scene::offset is taken off.
-/// Throws Error with file and place. The largest files: 20 million triangles take about 1.7 GiB in all as
-/// OBJ, half of it as GLB or PLY, and a sixth of OBJ's time.
+/// weights; mirrored nodes keep their front (the corners' order is turned). Of textures only
+/// those of alpha masks are read. Coordinates are read in double; where floats would not hold them,
+/// Scene::offset is taken off. Throws Error with file and place. The largest files: 20 million triangles take
+/// about 1.7 GiB in all as OBJ, half of it as GLB or PLY, and a sixth of OBJ's time.
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace sightline

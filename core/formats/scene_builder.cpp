@@ -166,6 +166,20 @@ void SceneBuilder::addTriangle(const glm::uvec3& triangle, const Place& place) {
   if (scene_.triangles.size() >= kMaxElements) throw Error(fmt::format("{}: too many triangles", place()));
   scene_.triangles.push_back(triangle);
   if (faces_) scene_.faces.push_back(face_);
+  if (surface_ != 0) surfaceOfLast(surface_);
+}
+
+void SceneBuilder::surfaceOfLast(uint32_t word) {
+  std::vector<uint32_t>& words = scene_.surfaces.words;
+  words.resize(scene_.triangles.size(), 0u);
+  words.back() = word;
+}
+
+void SceneBuilder::addToSurfaces(uint64_t first, uint64_t count, uint32_t flags) {
+  if (count == 0) return;
+  std::vector<uint32_t>& words = scene_.surfaces.words;
+  words.resize(scene_.triangles.size(), 0u);
+  for (uint64_t i = first; i < first + count; ++i) words[i] |= flags;
 }
 
 void SceneBuilder::addPolygon(std::span<const int64_t> corners, const VertexRange& vertices,
@@ -214,6 +228,7 @@ Scene SceneBuilder::finish(const std::string& file) {
     throw Error(fmt::format("{}: the scene is {:g} long, too small to trace; scale it to {:g} or more", file,
                             longest, kSmallestExtent));
   }
+  if (!scene_.surfaces.empty()) scene_.surfaces.words.resize(scene_.triangles.size(), 0u);
   scene_.degenerate_triangles = countDegenerate(scene_);
   if (scene_.offset == glm::dvec3(0.0)) {
     const glm::dvec3 offset = neededOffset(scene_, remainders_);

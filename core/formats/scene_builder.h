@@ -61,6 +61,15 @@ class SceneBuilder {
   /// Following triangles are cut from the file's next face (Scene::faces): OBJ and PLY call it before each.
   void nextFace() { ++face_; }
 
+  /// The surface word (core/shared/surface.h) of following triangles, 0 at first.
+  void beginSurface(uint32_t word) { surface_ = word; }
+  /// Gives the last triangle a surface of its own.
+  void surfaceOfLast(uint32_t word);
+  /// Adds flags to the surfaces of triangles that are there already.
+  void addToSurfaces(uint64_t first, uint64_t count, uint32_t flags);
+  /// To add masks and the records of masked triangles.
+  Surfaces& surfaces() { return scene_.surfaces; }
+
   /// Adds the triangles of a polygon; its vertex numbers count within `vertices`. Bad numbers and fewer than
   /// three corners are errors, or, to repair, dropped and counted.
   void addPolygon(std::span<const int64_t> corners, const VertexRange& vertices, const Place& place);
@@ -69,6 +78,7 @@ class SceneBuilder {
   void countRepaired(uint64_t triangles) { scene_.repaired_triangles += triangles; }
   bool repairs() const { return repair_; }
   void countAlpha(uint64_t triangles) { scene_.alpha_triangles += triangles; }
+  void countOpaqueMasks(uint64_t triangles) { scene_.opaque_mask_triangles += triangles; }
   void countGlass(uint64_t triangles) { scene_.glass_triangles += triangles; }
   void countSingleSided(uint64_t triangles) { scene_.single_sided_triangles += triangles; }
   void countHiddenNodes(uint64_t nodes) { scene_.hidden_nodes += nodes; }
@@ -97,6 +107,7 @@ class SceneBuilder {
   uint32_t face_ = ~0u;  ///< wraps to 0 with the first; only faces without triangles can be more than 2^32
   Scene scene_;
   SceneObject object_;
+  uint32_t surface_ = 0;
   std::vector<std::pair<uint32_t, glm::vec3>> bad_vertices_;  ///< not finite or too far out; ascending
   std::vector<std::string> bad_places_;                       ///< where the first of them stand in the file
   bool file_has_floats_ = true;                               ///< looked at only with an offset

@@ -5,6 +5,7 @@
 
 #include "core/judge/contact_filter.h"
 #include "core/judge/exact_contact.h"
+#include "core/judge/surface_contact.h"
 
 namespace sightline {
 namespace {
@@ -63,6 +64,7 @@ ExactHit Judge::nearest(const JudgeRay& ray) const {
   std::vector<Candidate> met;
   double limit = HUGE_VAL;  // the first triangle is not beyond it
   const auto visit = [&](uint32_t triangle) {
+    if (isGlass(triangle)) return;
     const JudgeTriangle shape = corners(triangle);
     FilteredContact contact = filterContact(ray, shape, limit);
     if (contact.certainty == Certainty::kMiss) return;
@@ -71,6 +73,7 @@ ExactHit Judge::nearest(const JudgeRay& ray) const {
       if (!t) return;
       contact.t = rangeOf(*t);
     }
+    if (!meetsSurface(scene_.surfaces, triangle, ray, shape)) return;
     limit = std::min(limit, contact.t.high);
     met.push_back({triangle, contact.t});
   };
@@ -81,8 +84,18 @@ ExactHit Judge::nearest(const JudgeRay& ray) const {
 bool Judge::meets(const JudgeRay& ray, uint32_t triangle) const {
   const JudgeTriangle shape = corners(triangle);
   const FilteredContact contact = filterContact(ray, shape, HUGE_VAL);
-  if (contact.certainty != Certainty::kUnsure) return contact.certainty == Certainty::kHit;
-  return exactContact(ray, shape).has_value();
+  if (contact.certainty == Certainty::kMiss) return false;
+  if (contact.certainty == Certainty::kUnsure && !exactContact(ray, shape)) return false;
+  return meetsSurface(scene_.surfaces, triangle, ray, shape);
+}
+
+bool Judge::sees(const JudgeRay& ray, uint32_t triangle) const {
+  if (!isGlass(triangle)) return nearest(ray).contains(triangle);
+  if (!meets(ray, triangle)) return false;
+  const ExactHit end = nearest(ray);
+  if (end.missed()) return true;
+  return compare(*exactPlaneDistance(ray, corners(triangle)),
+                 *exactPlaneDistance(ray, corners(end.triangles.front()))) <= 0;
 }
 
 std::vector<uint32_t> Judge::near(const JudgeRay& ray, double reach, double limit) const {

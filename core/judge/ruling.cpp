@@ -61,6 +61,7 @@ class RoundingSearch {
 
   void findObstacles(double limit, double radius) {
     for (const uint32_t triangle : judge_.near(ray_, radius, limit)) {
+      if (judge_.isGlass(triangle)) continue;  // nothing is behind it
       const SeenTriangle seen(judge_.corners(triangle), ray_, frame_);
       const double reach = steps_ * floatStep(judge_, ray_, triangle);
       if (seen.distance() > reach) continue;
@@ -151,6 +152,22 @@ class RoundingSearch {
   std::vector<size_t> piece_;  ///< of an obstacle: another one of its piece, or itself
 };
 
+/// How many steps beside a ray that passes inside a triangle, through a hole of its mask or at its back,
+/// there is something of it; infinite where there is nothing within the limit.
+double stepsOutOfHole(const Judge& judge, const JudgeRay& ray, uint32_t triangle, double step,
+                      const RoundingLimit& limit) {
+  const RayFrame frame(ray.direction);
+  for (double steps = limit.steps / 16; steps <= limit.steps; steps *= 2) {
+    for (int i = 0; i < 9; ++i) {
+      const double x = i % 3 - 1, y = i / 3 - 1;
+      if (x == 0 && y == 0) continue;
+      const glm::dvec3 offset = (frame.right * x + frame.up * y) * (steps * step / std::sqrt(x * x + y * y));
+      if (judge.meets({ray.origin + offset, ray.direction}, triangle)) return steps;
+    }
+  }
+  return HUGE_VAL;
+}
+
 }  // namespace
 
 double floatStep(const Judge& judge, const JudgeRay& ray, uint32_t triangle) {
@@ -175,6 +192,8 @@ Ruling rule(const Judge& judge, const Ray& float_ray, const Hit& answer, const E
     const bool meets = exact.contains(answer.triangle) || judge.meets(ray, answer.triangle);
     const SeenTriangle seen(judge.corners(answer.triangle), ray, RayFrame(ray.direction));
     if (!meets) ruling.steps_beside = seen.distance() / step;
+    if (!meets && ruling.steps_beside == 0 && judge.isPassable(answer.triangle))
+      ruling.steps_beside = stepsOutOfHole(judge, ray, answer.triangle, step, limit);
     const DoubleRange t = possibleDistances(judge, ray, answer.triangle, limit.steps * step);
     const double rounding = std::fabs(t.high) * 4 * kFloatRounding;
     const bool far = judge_distance && (answer.t < t.low - rounding || answer.t > t.high + rounding);

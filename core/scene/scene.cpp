@@ -25,6 +25,17 @@ uint64_t hashScene(const Scene& scene) {
   if (scene.offset != glm::dvec3(0.0)) {
     XXH3_64bits_update(state.get(), &scene.offset, sizeof(scene.offset));
   }
+  const auto add = [&](const auto& list) {
+    const uint64_t size = list.size();
+    XXH3_64bits_update(state.get(), &size, sizeof(size));
+    XXH3_64bits_update(state.get(), list.data(), size * sizeof(list[0]));
+  };
+  if (const Surfaces& surfaces = scene.surfaces; !surfaces.empty()) {
+    add(surfaces.words);
+    add(surfaces.masked);
+    add(surfaces.masks);
+    add(surfaces.texels);
+  }
   return XXH3_64bits_digest(state.get());
 }
 

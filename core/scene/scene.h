@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/extents.h"
+#include "core/scene/surfaces.h"
 
 namespace sightline {
 
@@ -44,19 +45,21 @@ struct Scene {
   std::vector<glm::uvec3> triangles;  ///< indices into positions
   std::vector<SceneObject> objects;
   std::vector<uint32_t>
-      faces;  ///< of OBJ and PLY, if loading was asked for them, else empty: the face in its
-              ///< file that each triangle is cut from, counted from 0 through the whole
-              ///< file. OBJ: f and fo statements; PLY: rows of faces, triangles of tristrips
+      faces;          ///< of OBJ and PLY, if loading was asked for them, else empty: the face in its
+                      ///< file that each triangle is cut from, counted from 0 through the whole
+                      ///< file. OBJ: f and fo statements; PLY: rows of faces, triangles of tristrips
+  Surfaces surfaces;  ///< holes, glass, and sides; empty where there are none
   /// Whole numbers that were taken off the file's coordinates, where floats would not have held those: a
   /// place in the file is positions[i] + offset. Cells files have the file's own coordinates: what reads one
   /// moves its cells by -offset (core/cell/view_cell.h), as bake (core/api/bake.h) does.
   glm::dvec3 offset{0.0};
   uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
   uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or vertex
-  uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND: traced as opaque
+  uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND
   uint64_t glass_triangles = 0;         ///< others that one sees through (glTF transmission, OBJ d, Tr or
-                                        ///< map_d): traced as opaque
-  uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false: traced as two-sided
+                                        ///< map_d)
+  uint64_t single_sided_triangles = 0;  ///< glTF doubleSided = false
+  uint64_t opaque_mask_triangles = 0;   ///< those of glTF masks that were loaded as opaque
   uint64_t hidden_nodes = 0;            ///< left out by glTF's KHR_node_visibility, with those below them
   std::vector<std::string> warnings;    ///< a line each: what else of the file is not in the scene, or only
                                         ///< roughly
@@ -75,7 +78,8 @@ struct Scene {
   glm::uvec3 vertexNumbers(uint32_t id) const { return triangles[id]; }
 };
 
-/// Hash of positions, triangles and, if there is one, offset (XXH3, 64 bit): what a PVS depends on.
+/// Hash of positions and triangles, and of surfaces and offset where there are any (XXH3, 64 bit): what a PVS
+/// depends on.
 uint64_t hashScene(const Scene& scene);
 
 /// Axis-aligned bounds of the vertices that triangles use.

@@ -58,6 +58,10 @@ typedef struct SetRef {
   volatile __global uint* overflow;
   uint capacity;
 } SetRef;
+// The scene's surfaces (surface.h): one array of words.
+#define SL_SURFACES_PARAM __global const uint* sl_surfaces
+#define SL_SURFACES sl_surfaces
+#define SL_SURFACE_WORD(i) sl_surfaces[i]
 // A stage's buffers, launch and triangles (stage_launch.h), in StageRef of cl_kernels/stage.cl.
 #define SL_STAGE_PARAM const StageRef* sl_stage
 #define SL_STAGE sl_stage
@@ -66,6 +70,7 @@ typedef struct SetRef {
 #define SL_CORNERS(triangle) cornersOf(sl_stage, (triangle))
 #define SL_STAGE_SET setOf(sl_stage)
 #define SL_STAGE_ADD(name, i, value) atomic_add(&sl_stage->name[i], (value))
+#define slInt(x) ((int)(x))
 #define slUint(x) ((uint)(x))
 #define slUint64(x) ((uint64)(x))
 #define slFloat(x) ((float)(x))
@@ -94,6 +99,9 @@ using std::fabs;
 using std::sqrt;
 using uint = std::uint32_t;
 using uint64 = std::uint64_t;
+inline int slInt(auto x) {
+  return static_cast<int>(x);
+}
 inline uint slUint(auto x) {
   return static_cast<uint>(x);
 }
@@ -135,6 +143,9 @@ inline uint slAtomicCas(uint& slot, uint expected, uint desired) {
   std::atomic_ref<uint>(sl_set.field[i]).fetch_or((bits), std::memory_order_relaxed)
 #define SL_SET_ADD(field, i, value) \
   std::atomic_ref<uint>(sl_set.field[i]).fetch_add((value), std::memory_order_relaxed)
+#define SL_SURFACES_PARAM const uint* sl_surfaces
+#define SL_SURFACES sl_surfaces
+#define SL_SURFACE_WORD(i) sl_surfaces[i]
    // On the host a stage is an object with a function for each buffer and number that it has.
 #define SL_STAGE_PARAM auto&& sl_stage
 #define SL_STAGE sl_stage
@@ -166,6 +177,12 @@ inline uint slAtomicCas(uint& slot, uint expected, uint desired) {
 #define SL_SET_CAS(field, i, expected, desired) atomicCompSwap(sl_set_##field[i], (expected), (desired))
 #define SL_SET_OR(field, i, bits) atomicOr(sl_set_##field[i], (bits))
 #define SL_SET_ADD(field, i, value) atomicAdd(sl_set_##field[i], (value))
+// The scene's surfaces are the launch's too (vk_shaders/surface.glsl): the argument is a dummy.
+#define SL_SURFACES_PARAM uint sl_surfaces
+#define SL_SURFACES sl_surfaces
+#ifndef SL_SURFACE_WORD
+#define SL_SURFACE_WORD(i) 0u
+#endif
 // A stage's launch is the whole shader's (vk_shaders/state.glsl); so this argument too is a dummy.
 #define SL_STAGE_PARAM uint sl_stage
 #define SL_STAGE sl_stage
@@ -176,6 +193,7 @@ inline uint slAtomicCas(uint& slot, uint expected, uint desired) {
 #define SL_STAGE_ADD(name, i, value) atomicAdd(SL_THE_LAUNCH.name.at[i], (value))
 #define SL_ADDRESS(type, name) Buffer_##type name;
 #define SL_ADDRESSES(buffers, count) buffers(SL_ADDRESS)
+#define slInt(x) int(x)
 #define slUint(x) uint(x)
 #define slBitCount(x) uint(bitCount(x))
 #define slLowestBit(x) uint(findLSB(x))

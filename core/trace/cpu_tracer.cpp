@@ -1,9 +1,11 @@
 #include "core/trace/cpu_tracer.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/shared/box.h"
 #include "core/shared/ray.h"
+#include "core/shared/surface.h"
 #include "core/shared/triangle.h"
 #include "core/shared/vector.h"
 
@@ -58,12 +60,32 @@ inline void keepNearer(float t, uint32_t id, Hit& best) {
   if (t > 0 && (t < best.t || (t == best.t && id < best.triangle))) best = {t, id};
 }
 
+/// A hit on a triangle with a surface of its own. Glass may lie as near as the best hit, whatever the ids.
+inline void considerSurface(const uint32_t* surfaces, uint32_t place, const ShearedRay& ray,
+                            const TriangleRecord& record, float t, Hit& best, std::vector<Hit>* glass) {
+  const uint32_t surface = surfaces[kSurfaceHeaderWords + place];
+  const bool is_glass = (surface & kSurfaceGlass) != 0;
+  if (is_glass && glass == nullptr) return;
+  if (!(t > 0 && (t < best.t || (t == best.t && (is_glass || record.id < best.triangle))))) return;
+  const float* v = record.vertices;
+  if (!surfaceHolds(surfaces, surface, ray, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}))
+    return;
+  if (is_glass) {
+    glass->push_back({t, record.id});
+  } else {
+    best = {t, record.id};
+  }
+}
+
 }  // namespace
 
 CpuTracer::CpuTracer(const Scene& scene, const Bvh& bvh) : bvh_(bvh), triangles_(bvh.references.size()) {
   checkTraceable(bvh);
   packTriangles(scene, bvh, 0, std::span<TriangleRecord>(triangles_));
   scene_reach_ = sceneReach(bvh.low, bvh.high);
+  if (scene.surfaces.empty()) return;
+  surfaces_ = packSurfaces(scene.surfaces, bvh.references);
+  features_ = featuresOf(scene.surfaces);
 }
 
 CpuTracer::CpuTracer(std::vector<TriangleRecord> triangles, const Bvh& bvh)
@@ -72,6 +94,22 @@ CpuTracer::CpuTracer(std::vector<TriangleRecord> triangles, const Bvh& bvh)
 }
 
 Hit CpuTracer::trace(const Ray& ray) const {
+  return surfaces_.empty() ? walk<false>(ray, nullptr) : walk<true>(ray, nullptr);
+}
+
+Hit CpuTracer::traceThrough(const Ray& ray, std::vector<Hit>& glass) const {
+  glass.clear();
+  if (!features_.glass) return trace(ray);
+  const Hit best = walk<true>(ray, &glass);
+  std::erase_if(glass, [&](const Hit& hit) { return hit.t > best.t; });
+  std::ranges::sort(glass, {}, &Hit::triangle);
+  const auto twice = std::ranges::unique(glass, {}, &Hit::triangle);  // spatial splits
+  glass.erase(twice.begin(), twice.end());
+  return best;
+}
+
+template <bool kSurfaces>
+Hit CpuTracer::walk(const Ray& ray, [[maybe_unused]] std::vector<Hit>* glass) const {
   Hit best{INFINITY, kNoTriangle};
   if (!hasDirection(ray)) return best;
   // A ray with a NaN or an infinity in it would sort its boxes into no order; it hits nothing.
@@ -87,8 +125,12 @@ Hit CpuTracer::trace(const Ray& ray) const {
     if (entry.near_t > best.t) continue;
     for (uint32_t i = entry.child; i < entry.child + entry.count; ++i) {
       const float* v = triangles_[i].vertices;
-      keepNearer(intersectTriangle(sheared, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}),
-                 triangles_[i].id, best);
+      const float t = intersectTriangle(sheared, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]});
+      if constexpr (kSurfaces) {
+        considerSurface(surfaces_.data(), i, sheared, triangles_[i], t, best, glass);
+      } else {
+        keepNearer(t, triangles_[i].id, best);
+      }
     }
     if (entry.count > 0) continue;
     const BvhNode8& node = bvh_.nodes8[entry.child];

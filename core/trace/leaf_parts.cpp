@@ -58,4 +58,18 @@ LeafParts splitIntoParts(const Bvh& bvh, uint32_t triangle_count, uint32_t limit
   return result;
 }
 
+LeafParts splitBySurface(const LeafParts& parts, const Surfaces& surfaces) {
+  LeafParts result = parts;
+  if (surfaces.empty()) return result;
+  result.parts.clear();
+  for (const LeafPart& part : parts.parts) {
+    const auto begin = result.ids.begin() + part.first, end = begin + part.count;
+    const auto middle = std::stable_partition(begin, end, [&](uint32_t id) { return surfaces.of(id) == 0; });
+    const auto opaque = uint32_t(middle - begin);
+    if (opaque > 0) result.parts.push_back({part.first, opaque, true});
+    if (opaque < part.count) result.parts.push_back({part.first + opaque, part.count - opaque, false});
+  }
+  return result;
+}
+
 }  // namespace sightline

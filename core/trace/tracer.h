@@ -1,14 +1,23 @@
 #pragma once
 #include <algorithm>
+#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "core/shared/types.h"
 #include "core/shared/view_ray.h"
 #include "core/trace/device_info.h"
 
 namespace sightline {
+
+/// A triangle of glass that a ray meets before or where it ends: it is seen, and seen through.
+struct SeenThrough {
+  uint32_t ray;  ///< its index
+  uint32_t triangle;
+  auto operator<=>(const SeenThrough&) const = default;
+};
 
 /// Says what rays hit in the scene that it holds: what pictures, measurements and cross-checks need. Not
 /// thread-safe. All throw Error.
@@ -17,11 +26,16 @@ class Tracer {
   virtual ~Tracer() = default;
   virtual DeviceInfo info() const = 0;
 
-  /// Nearest hits of any rays. hits.size() == rays.size().
+  /// Nearest hits of any rays, on what ends them: glass does not, nor holes of masks, nor backs of what has
+  /// only a front. hits.size() == rays.size().
   virtual void traceRays(std::span<const Ray> rays, std::span<Hit> hits) = 0;
 
-  /// Square images of triangle ids (kNoTriangle where a pixel shows nothing): view after view, row after row
-  /// from the top. resolution: 1 .. kMaxViewResolution pixels a side;
+  /// The glass that each ray meets no farther away than its hit (hits: as of traceRays): ascending by ray and
+  /// triangle, each once. Empty where the scene has no glass.
+  virtual std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) = 0;
+
+  /// Square images of triangle ids (kNoTriangle where a pixel shows nothing; what ends the pixel's ray): view
+  /// after view, row after row from the top. resolution: 1 .. kMaxViewResolution pixels a side;
   /// triangles.size() == views.size() * resolution^2. Rays are made on the device, so many views a call are
   /// the fastest way to see much.
   virtual void traceViews(std::span<const ViewFrame> views, uint32_t resolution,

@@ -116,7 +116,7 @@ class BetterWitness {
     const glm::dvec3 from(origin), direction = target - from;
     if (from + direction != target || target - direction != from || direction == glm::dvec3(0.0)) return;
     if (!sight_.looksAlong(direction)) return;
-    if (!judge_.nearest({from, direction}).contains(triangle_)) return;
+    if (!judge_.sees({from, direction}, triangle_)) return;
     point_ = Better{{origin, glm::vec3(direction), witness_.stage}, false, target};
   }
 
@@ -142,7 +142,7 @@ class BetterWitness {
     const Witness better{origin, glm::vec3(target - glm::dvec3(origin)), witness_.stage};
     const glm::dvec3 direction(better.direction);
     if (direction == glm::dvec3(0.0) || !sight_.looksAlong(direction)) return std::nullopt;
-    if (!judge_.nearest(judgeRay(rayOf(better))).contains(triangle_)) return std::nullopt;
+    if (!judge_.sees(judgeRay(rayOf(better)), triangle_)) return std::nullopt;
     return better;
   }
 
@@ -162,7 +162,7 @@ OpenProof judgeWitness(const Judge& judge, const CellSight& sight, uint32_t tria
   OpenProof result{triangle, Proof::kDisproved, Fault::kNotMet, witness, 0, {}};
   const Ray ray = rayOf(witness);
   const ExactHit exact = judge.nearest(judgeRay(ray));
-  if (exact.contains(triangle)) {
+  if (exact.contains(triangle) || (judge.isGlass(triangle) && judge.sees(judgeRay(ray), triangle))) {
     result.proof = Proof::kProven;
     result.fault = Fault::kNone;
     return result;

@@ -8,12 +8,13 @@
 namespace sightline {
 namespace {
 
-/// Opaque triangles without indices.
-VkAccelerationStructureGeometryKHR triangleGeometry(VkDeviceAddress corners, uint32_t triangles) {
+/// Triangles without indices. Unless all are opaque, ray queries decide about each.
+VkAccelerationStructureGeometryKHR triangleGeometry(VkDeviceAddress corners, uint32_t triangles,
+                                                    bool opaque) {
   auto geometry =
       vkStruct<VkAccelerationStructureGeometryKHR>(VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR);
   geometry.geometryType = VK_GEOMETRY_TYPE_TRIANGLES_KHR;
-  geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
+  if (opaque) geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
   VkAccelerationStructureGeometryTrianglesDataKHR& data = geometry.geometry.triangles;
   data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_TRIANGLES_DATA_KHR;
   data.vertexFormat = VK_FORMAT_R32G32B32_SFLOAT;
@@ -165,7 +166,7 @@ VkAccelerationStructureInstanceKHR instanceOf(const VulkanStructure& part, uint3
 
 uint32_t largestPart(const VulkanContext& context, uint32_t triangles) {
   auto limit = static_cast<uint32_t>(std::min<uint64_t>(context.limits().part_triangles, triangles));
-  const VkAccelerationStructureGeometryKHR geometry = triangleGeometry(0, limit);
+  const VkAccelerationStructureGeometryKHR geometry = triangleGeometry(0, limit, true);
   const auto info = buildInfo(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry);
   const auto fits = [&](uint32_t count) {
     const VkAccelerationStructureBuildSizesInfoKHR sizes = buildSizes(context, info, count);
@@ -185,7 +186,7 @@ VulkanTree buildVulkanTree(const VulkanContext& context, const VulkanBuffer& cor
   std::vector<VkAccelerationStructureInstanceKHR> instances;
   for (const LeafPart& part : parts) {
     const auto geometry =
-        triangleGeometry(corners.address() + uint64_t(part.first) * kCornerBytes, part.count);
+        triangleGeometry(corners.address() + uint64_t(part.first) * kCornerBytes, part.count, part.opaque);
     VulkanStructure loose =
         builder.build(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry, part.count);
     tree.parts.push_back(builder.compact(std::move(loose)));

@@ -119,7 +119,7 @@ TEST_F(OpenCl, AFailedBuildShowsItsLog) {
 TEST_F(OpenCl, BuildsWithoutAWarning) {  // PoCL counts them on the user's terminal
   for (const uint32_t rays_per_item : {1u, 8u}) {
     OpenClContext context("opencl");
-    EXPECT_NO_THROW(buildKernels(context, rays_per_item, "-Werror")) << rays_per_item;
+    EXPECT_NO_THROW(buildKernels(context, rays_per_item, {}, "-Werror")) << rays_per_item;
   }
 }
 

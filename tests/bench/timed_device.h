@@ -57,6 +57,9 @@ class TimedDevice final : public Device {
     return timed("read", [&] { return inner_.readPvs(); });
   }
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override { inner_.traceRays(rays, hits); }
+  std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
+    return inner_.traceGlass(rays, hits);
+  }
   void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
                   std::span<uint32_t> triangles) override {
     inner_.traceViews(views, resolution, triangles);

@@ -22,7 +22,7 @@ using nlohmann::json;
 BakeReport exampleReport() {
   BakeReport report;
   report.version = "1.2.3";
-  report.scene = {"room.obj", 0xabcdef, 1000, 700, 3, 1, 2, 4, 6, 5, 7, {"far off"}};
+  report.scene = {"room.obj", 0xabcdef, 1000, 700, 3, 1, 2, 4, 6, 5, 7, 0, {}, {"far off"}};
   report.baked_on = "cpu";
   report.device = DeviceInfo{"cpu", "host", "built in", "8-wide", "", 5};
   report.tree = TreeSummary{0.5, 12.5, 9, 10, 20, 1100, 9000};
@@ -155,12 +155,16 @@ TEST(Report, WarnsOfMaterialsInOneLineAndPassesOnWhatLoadingSaid) {
   EXPECT_EQ(sceneWarnings(scene), (std::vector<std::string>{"far away"}));
   scene.alpha = 3;
   scene.glass = 2;
+  scene.opaque_masks = 1;
   scene.single_sided = 4;
+  EXPECT_EQ(
+      sceneWarnings(scene),
+      (std::vector<std::string>{
+          "1 triangles with masks are traced as opaque; 4 single-sided triangles are traced as two-sided",
+          "far away"}));
+  scene.surfaces.front_only = 4;
   EXPECT_EQ(sceneWarnings(scene),
-            (std::vector<std::string>{
-                "3 triangles with alpha are traced as opaque; 2 triangles of glass are traced as "
-                "opaque; 4 single-sided triangles are traced as two-sided",
-                "far away"}));
+            (std::vector<std::string>{"1 triangles with masks are traced as opaque", "far away"}));
 }
 
 Scene threeObjects() {

@@ -31,6 +31,9 @@ class ForwardingDevice : public Device {
   DeviceCounters counters() override { return device_->counters(); }
   std::vector<PvsEntry> readPvs() override { return device_->readPvs(); }
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override { device_->traceRays(rays, hits); }
+  std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
+    return device_->traceGlass(rays, hits);
+  }
   void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
                   std::span<uint32_t> triangles) override {
     device_->traceViews(views, resolution, triangles);

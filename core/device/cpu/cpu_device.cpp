@@ -22,6 +22,19 @@ namespace {
 /// Rays that are traced together, and packets that a thread takes at a time.
 constexpr uint32_t kPacket = 8;
 constexpr size_t kGrain = 64;
+/// Rays whose glass is listed together.
+constexpr size_t kGlassRays = 256;
+
+/// What a ray sees.
+struct Sight {
+  Hit hit;                     ///< what ends it
+  std::span<const Hit> glass;  ///< before that
+};
+
+void insertSight(SetRef set, const Sight& sight, uint32_t ray_index) {
+  insertHit(set, sight.hit.triangle, ray_index);
+  for (const Hit& hit : sight.glass) insertHit(set, hit.triangle, ray_index);
+}
 
 class CpuDevice final : public Device {
   // Generators first: their types are deduced.
@@ -74,7 +87,7 @@ class CpuDevice final : public Device {
     segments_.push_back(segment);
     rays_ += launch(
         slotCount(segment), [&] { return slotRays(segment, params_.shifts); },
-        [&](const BatchRay& ray, const Hit& hit, SetRef set) { insertHit(set, hit.triangle, ray.index); });
+        [&](const BatchRay& ray, const Sight& sight, SetRef set) { insertSight(set, sight, ray.index); });
   }
 
   BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
@@ -88,12 +101,13 @@ class CpuDevice final : public Device {
     is_discontinuity_.assign(total, 0);
     border_hits_.assign(total, isGvs(params_) ? kNotTraced : kNoTriangle);
     const BorderRays batch = borderBatch();
-    const auto take = [&](const BatchRay& ray, const Hit& hit, SetRef set) {
+    const auto take = [&](const BatchRay& ray, const Sight& sight, SetRef set) {
+      const Hit& hit = sight.hit;
       const uint32_t index = ray.index - 1;
       border_hits_[index] = hit.triangle;
       const PvsEntry& entry = entries_[first + batch.entryOf(index)];
       is_discontinuity_[index] = isDiscontinuityOf(scene_, entry, ray.ray, hit, params_) ? 1 : 0;
-      insertHit(set, hit.triangle, ray.index);
+      insertSight(set, sight, ray.index);
     };
     if (isGvs(params_)) {
       for (uint32_t level = 0; level < kGvsLevels; ++level) {
@@ -122,7 +136,7 @@ class CpuDevice final : public Device {
     reverse_first_ = first;
     rays_ += launch(
         uint64_t(count) * reverseRayCount(params_), [&] { return reverseRays(); },
-        [&](const BatchRay& ray, const Hit& hit, SetRef set) { insertHit(set, hit.triangle, ray.index); });
+        [&](const BatchRay& ray, const Sight& sight, SetRef set) { insertSight(set, sight, ray.index); });
   }
 
   uint32_t collect(uint32_t stage) override {
@@ -157,8 +171,11 @@ class CpuDevice final : public Device {
     std::atomic<uint64_t> missing = 0;
     rays_ += launch(
         slotCount(segment), [&] { return slotRays(segment, shifts); },
-        [&](const BatchRay&, const Hit& hit, SetRef set) {
-          if (hit.triangle != kNoTriangle && !isInSet(set, hit.triangle)) missing.fetch_add(1);
+        [&](const BatchRay&, const Sight& sight, SetRef set) {
+          const auto lacks = [&](const Hit& hit) {
+            return hit.triangle != kNoTriangle && !isInSet(set, hit.triangle);
+          };
+          if (lacks(sight.hit) || std::ranges::any_of(sight.glass, lacks)) missing.fetch_add(1);
         });
     return missing;
   }
@@ -177,6 +194,24 @@ class CpuDevice final : public Device {
       const size_t first = begin * kPacket, last = std::min(end * kPacket, rays.size());
       tracer_.tracePacket(&rays[first], &hits[first], static_cast<int>(last - first));
     });
+  }
+
+  std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
+    std::vector<SeenThrough> seen;
+    if (!tracer_.features().glass) return seen;
+    std::vector<std::vector<SeenThrough>> parts((rays.size() + kGlassRays - 1) / kGlassRays);
+    parallel(parts.size(), [&](size_t begin, size_t end) {
+      std::vector<Hit> glass;
+      for (size_t i = begin * kGlassRays; i < std::min(end * kGlassRays, rays.size()); ++i) {
+        tracer_.traceThrough(rays[i], glass);
+        for (const Hit& hit : glass) {
+          if (hits[i].triangle != kNoTriangle && hit.t > hits[i].t) continue;
+          parts[i / kGlassRays].push_back({static_cast<uint32_t>(i), hit.triangle});
+        }
+      }
+    });
+    for (const auto& part : parts) seen.insert(seen.end(), part.begin(), part.end());
+    return seen;
   }
 
   void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
@@ -229,9 +264,9 @@ class CpuDevice final : public Device {
   }
 
   /// Traces the rays 0 .. count - 1 of generators that makeGenerator() returns (each is called with ascending
-  /// numbers by one thread), packet by packet, and hands those that have a direction with their hits to
-  /// take(ray, hit, set); again with a larger set if it was full (insertion is idempotent). Returns the rays
-  /// of one full run.
+  /// numbers by one thread), packet by packet, and hands those that have a direction with what they see to
+  /// take(ray, sight, set); again with a larger set if it was full (insertion is idempotent). Returns the
+  /// rays of one full run.
   uint64_t launch(uint64_t count, auto&& makeGenerator, auto&& take) {
     for (;;) {
       std::atomic<uint64_t> total = 0;
@@ -241,6 +276,7 @@ class CpuDevice final : public Device {
         BatchRay batch[kPacket];
         Ray rays[kPacket];
         Hit hits[kPacket];
+        std::vector<Hit> glass;
         uint64_t traced = 0;
         for (size_t packet = begin; packet < end; ++packet) {
           const auto first = static_cast<uint32_t>(packet * kPacket);
@@ -249,11 +285,12 @@ class CpuDevice final : public Device {
             batch[lane] = generate(first + lane);
             rays[lane] = batch[lane].ray;
           }
-          tracer_.tracePacket(rays, hits, static_cast<int>(lanes));
+          if (!tracer_.features().glass) tracer_.tracePacket(rays, hits, static_cast<int>(lanes));
           for (uint32_t lane = 0; lane < lanes; ++lane) {
             if (!hasDirection(rays[lane])) continue;
             ++traced;
-            take(batch[lane], hits[lane], set);
+            if (tracer_.features().glass) hits[lane] = tracer_.traceThrough(rays[lane], glass);
+            take(batch[lane], Sight{hits[lane], glass}, set);
           }
         }
         total.fetch_add(traced, std::memory_order_relaxed);

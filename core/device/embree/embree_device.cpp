@@ -28,19 +28,67 @@ using EmbreeLibrary = std::unique_ptr<RTCDeviceTy, Release>;
 using EmbreeScene = std::unique_ptr<RTCSceneTy, Release>;
 using EmbreeGeometry = std::unique_ptr<RTCGeometryTy, Release>;
 
-/// A ray does not meet what it begins on: t > 0, where Embree takes t >= 0.
-void rejectOrigin(const RTCFilterFunctionNArguments* arguments) {
-  if (!(RTCRayN_tfar(arguments->ray, arguments->N, 0) > 0)) arguments->valid[0] = 0;
+/// What a ray's filter needs to know. Embree's own comes first: the filter gets a pointer to that.
+struct FilterContext {
+  RTCIntersectContext embree;
+  const Surfaces* surfaces;
+  std::vector<uint32_t>* glass;  ///< gets the glass that the ray meets; null: none is to be listed
+};
+
+/// Whether a mask holds at a place of its image, in double: independent of what our own tracers do.
+bool holdsAt(const Surfaces& surfaces, const MaskedTriangle& t, double u, double v) {
+  const uvec4 mask = surfaces.masks[t.corner_c_mask.z].size_wrap_first;
+  const double scale = std::ldexp(1.0, -int(t.corner_c_mask.w)), offset = std::ldexp(1.0, 30) * scale;
+  uint64_t texel[2];
+  for (int axis = 0; axis < 2; ++axis) {
+    const double a = t.corners_ab[axis] * scale - offset, b = t.corners_ab[axis + 2] * scale - offset,
+                 c = t.corner_c_mask[axis] * scale - offset;
+    const double place = std::floor((1.0 - u - v) * a + u * b + v * c), size = mask[axis];
+    const uint32_t wrap = axis == 0 ? mask.z & 3u : mask.z >> 2;
+    double inside = std::clamp(place, 0.0, size - 1.0);
+    if (wrap == kWrapRepeat) inside = place - std::floor(place / size) * size;
+    if (wrap == kWrapMirror) {
+      inside = place - std::floor(place / (2.0 * size)) * 2.0 * size;
+      inside = std::min(inside, 2.0 * size - 1.0 - inside);
+    }
+    texel[axis] = uint64_t(inside);
+  }
+  const uint64_t bit = texel[1] * mask.x + texel[0];
+  return (surfaces.texels[mask.w + bit / 32] >> (bit % 32) & 1u) != 0;
+}
+
+/// A ray does not meet what it begins on: t > 0, where Embree takes t >= 0. Nor holes, nor backs of what has
+/// only a front; and it goes on behind glass.
+void filterHit(const RTCFilterFunctionNArguments* arguments) {
+  const auto reject = [&] { arguments->valid[0] = 0; };
+  if (!(RTCRayN_tfar(arguments->ray, arguments->N, 0) > 0)) return reject();
+  const auto& context = *reinterpret_cast<const FilterContext*>(arguments->context);
+  RTCHitN* const hit = arguments->hit;
+  const uint32_t triangle = RTCHitN_primID(hit, 1, 0), surface = context.surfaces->of(triangle);
+  if (surface == 0) return;
+  const auto product = [](float a, float b) { return double(a) * double(b); };
+  const double facing = product(RTCHitN_Ng_x(hit, 1, 0), RTCRayN_dir_x(arguments->ray, 1, 0)) +
+                        product(RTCHitN_Ng_y(hit, 1, 0), RTCRayN_dir_y(arguments->ray, 1, 0)) +
+                        product(RTCHitN_Ng_z(hit, 1, 0), RTCRayN_dir_z(arguments->ray, 1, 0));
+  if ((surface & kSurfaceFrontOnly) != 0 && facing > 0) return reject();
+  if ((surface & kSurfaceMasked) != 0 &&
+      !holdsAt(*context.surfaces, context.surfaces->masked[surface & kSurfaceIndex], RTCHitN_u(hit, 1, 0),
+               RTCHitN_v(hit, 1, 0))) {
+    return reject();
+  }
+  if ((surface & kSurfaceGlass) == 0) return;
+  if (context.glass != nullptr) context.glass->push_back(triangle);
+  reject();
 }
 
 class EmbreeTracer final : public Tracer {
  public:
   explicit EmbreeTracer(const Scene& scene)
-      : library_(rtcNewDevice(nullptr)), scene_(rtcNewScene(library_.get())) {
+      : library_(rtcNewDevice(nullptr)), scene_(rtcNewScene(library_.get())), surfaces_(scene.surfaces) {
     const EmbreeGeometry mesh(rtcNewGeometry(library_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     copy(mesh.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, scene.positions);
     copy(mesh.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, scene.triangles);
-    rtcSetGeometryIntersectFilterFunction(mesh.get(), rejectOrigin);
+    rtcSetGeometryIntersectFilterFunction(mesh.get(), filterHit);
     rtcCommitGeometry(mesh.get());
     rtcAttachGeometry(scene_.get(), mesh.get());
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
@@ -57,6 +105,22 @@ class EmbreeTracer final : public Tracer {
       }
     });
     check("trace");
+  }
+
+  std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
+    std::vector<SeenThrough> seen;
+    if (!featuresOf(surfaces_).glass) return seen;
+    for (size_t i = 0; i < rays.size(); ++i) {
+      if (!hasDirection(rays[i])) continue;
+      std::vector<uint32_t> glass;
+      trace(rays[i], hits[i].triangle == kNoTriangle ? HUGE_VALF : hits[i].t, &glass);
+      std::ranges::sort(glass);
+      const auto twice = std::ranges::unique(glass);
+      glass.erase(twice.begin(), twice.end());
+      for (const uint32_t triangle : glass) seen.push_back({uint32_t(i), triangle});
+    }
+    check("trace");
+    return seen;
   }
 
   void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
@@ -78,9 +142,9 @@ class EmbreeTracer final : public Tracer {
     std::memcpy(to, from.data(), from.size() * sizeof(Element));
   }
 
-  Hit trace(const Ray& ray) const {
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
+  Hit trace(const Ray& ray, float farthest = HUGE_VALF, std::vector<uint32_t>* glass = nullptr) const {
+    FilterContext context{{}, &surfaces_, glass};
+    rtcInitIntersectContext(&context.embree);
     RTCRayHit query{};
     query.ray.org_x = ray.origin.x;
     query.ray.org_y = ray.origin.y;
@@ -88,10 +152,10 @@ class EmbreeTracer final : public Tracer {
     query.ray.dir_x = ray.direction.x;
     query.ray.dir_y = ray.direction.y;
     query.ray.dir_z = ray.direction.z;
-    query.ray.tfar = HUGE_VALF;
+    query.ray.tfar = farthest;
     query.ray.mask = ~0u;
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(scene_.get(), &context, &query);
+    rtcIntersect1(scene_.get(), &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {0, kNoTriangle};
     return {query.ray.tfar, query.hit.primID};
   }
@@ -106,6 +170,7 @@ class EmbreeTracer final : public Tracer {
 
   EmbreeLibrary library_;
   EmbreeScene scene_;
+  Surfaces surfaces_;
 };
 
 }  // namespace

@@ -35,6 +35,7 @@ class GpuSampler : public Device {
   template <typename... Arguments>
   explicit GpuSampler(const Scene& scene, const DeviceOptions& options, const Arguments&... arguments)
       : api_(arguments...),
+        has_glass_(featuresOf(scene.surfaces).glass),
         triangle_count_(scene.triangleCount()),
         set_(api_, triangle_count_, wantsHash(options)) {
     reserve(StageBuffer::faces, 6 * sizeof(Face), "faces of the view cell");
@@ -159,6 +160,19 @@ class GpuSampler : public Device {
     }
   }
 
+  std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
+    std::vector<SeenThrough> seen;
+    for (size_t first = 0; has_glass_ && first < rays.size(); first += kRayChunk) {
+      const size_t count = std::min(kRayChunk, rays.size() - first);
+      put(StageBuffer::rays, &rays[first], count, "rays");
+      put(StageBuffer::hits, &hits[first], count, "hits");
+      const size_t before = seen.size();
+      listGlass(static_cast<uint32_t>(count), seen);
+      for (size_t i = before; i < seen.size(); ++i) seen[i].ray += static_cast<uint32_t>(first);
+    }
+    return seen;
+  }
+
   void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
                   std::span<uint32_t> triangles) override {
     const size_t most = viewsALaunch(resolution), view_pixels = size_t(resolution) * resolution;
@@ -211,6 +225,29 @@ class GpuSampler : public Device {
   bool wantsHash(const DeviceOptions& options) const {
     if (options.set != SetKind::kAuto) return options.set == SetKind::kHash;
     return !api_.fits(uint64_t(triangle_count_) * 4);
+  }
+
+  /// Appends the glass of the rays that lie in the buffers, with room for more as long as there is too
+  /// little.
+  void listGlass(uint32_t rays, std::vector<SeenThrough>& seen) {
+    static_assert(sizeof(SeenThrough) == 8);
+    for (uint32_t room = std::max(rays, 1024u);;) {
+      enlarge(glass_, uint64_t(room) * sizeof(SeenThrough), "list of glass");
+      api_.bind(StageBuffer::indices, glass_);
+      launch().list_end = room;
+      api_.run(GpuStage::kTraceGlass, rays);
+      const uint32_t found = api_.takeCounters()[kListCounter];
+      if (found > room) {
+        room = found;
+        continue;
+      }
+      const size_t before = seen.size();
+      seen.resize(before + found);
+      if (found > 0) api_.read(glass_, &seen[before], found * sizeof(SeenThrough));
+      std::sort(seen.begin() + std::ptrdiff_t(before), seen.end());
+      seen.erase(std::unique(seen.begin() + std::ptrdiff_t(before), seen.end()), seen.end());
+      return;
+    }
   }
 
   /// Chooses the entries of a batch of border rays and makes their polygons; returns a bound of the number of
@@ -318,10 +355,12 @@ class GpuSampler : public Device {
   }
 
   Api api_;
+  bool has_glass_;
   uint32_t triangle_count_;
   GpuSet<Api> set_;
   std::array<Buffer, kStageBuffers> buffers_;  ///< those of the sampler, by name
   Buffer fresh_counts_, new_ids_;              ///< block_counts and indices of the new triangles
+  Buffer glass_;                               ///< SeenThrough, of traceGlass
   std::vector<RandomSegment> segments_;        ///< of the batch
   uint32_t size_ = 0;                          ///< entries of the list
   uint32_t fresh_ = 0;                         ///< new triangles of the batch

@@ -16,6 +16,7 @@ constexpr Names kNames[] = {
     {"traceReverse", "trace_reverse"},
     {"traceRaysKernel", "trace_rays"},
     {"traceViewsKernel", "trace_views"},
+    {"traceGlass", "trace_glass"},
     {"countBits", "count_bits"},
     {"sumBlocks", "sum_blocks"},
     {"writeIndices", "write_indices"},

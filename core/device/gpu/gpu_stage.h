@@ -20,6 +20,7 @@ enum class GpuStage : uint32_t {
   kTraceReverse,
   kTraceRays,
   kTraceViews,
+  kTraceGlass,  ///< only where the scene has glass
   kCountBits,
   kSumBlocks,
   kWriteIndices,

@@ -49,7 +49,7 @@ class NaiveDevice final : public Device {
   void traceRandom(const RandomSegment& segment) override {
     trace(
         slotCount(segment), [&] { return slotRays(segment, params_.shifts); },
-        [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
+        [&](const BatchRay& ray, const Hit&, std::span<const uint32_t> seen) { insert(seen, ray); });
   }
 
   BorderBatch traceBorder(uint32_t first, uint32_t most_rays, bool listing) override {
@@ -60,8 +60,8 @@ class NaiveDevice final : public Device {
     const BorderRays batch(scene_, pending, starts, params_);
     std::vector<uint32_t> border_hits(starts.back(), isGvs(params_) ? kNotTraced : kNoTriangle);
     std::vector<uint8_t> is_discontinuity(starts.back(), 0);
-    const auto take = [&](const BatchRay& ray, const Hit& hit) {
-      insert(hit.triangle, ray);
+    const auto take = [&](const BatchRay& ray, const Hit& hit, std::span<const uint32_t> seen) {
+      insert(seen, ray);
       const uint32_t index = ray.index - 1;
       border_hits[index] = hit.triangle;
       if (!listing) return;
@@ -91,7 +91,7 @@ class NaiveDevice final : public Device {
   void traceReverse(uint32_t first, uint32_t count) override {
     trace(
         uint64_t(count) * reverseRayCount(params_), [&] { return reverseRays(first); },
-        [&](const BatchRay& ray, const Hit& hit) { insert(hit.triangle, ray); });
+        [&](const BatchRay& ray, const Hit&, std::span<const uint32_t> seen) { insert(seen, ray); });
   }
 
   uint32_t collect(uint32_t stage) override {
@@ -108,7 +108,7 @@ class NaiveDevice final : public Device {
   }
 
   void insertContained(std::span<const uint32_t> triangles) override {
-    for (const uint32_t triangle : triangles) insert(triangle, {noRay(), 1});
+    insert(triangles, {noRay(), 1});
     collect(kStageContained);
   }
 
@@ -116,8 +116,9 @@ class NaiveDevice final : public Device {
     uint64_t missing = 0;
     trace(
         slotCount(segment), [&] { return slotRays(segment, shifts); },
-        [&](const BatchRay&, const Hit& hit) {
-          missing += hit.triangle != kNoTriangle && !set_.contains(hit.triangle) ? 1 : 0;
+        [&](const BatchRay&, const Hit&, std::span<const uint32_t> seen) {
+          missing +=
+              std::ranges::any_of(seen, [&](uint32_t triangle) { return !set_.contains(triangle); }) ? 1 : 0;
         });
     return missing;
   }
@@ -131,6 +132,9 @@ class NaiveDevice final : public Device {
   std::vector<PvsEntry> readPvs() override { return entries_; }
 
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override { inner_->traceRays(rays, hits); }
+  std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
+    return inner_->traceGlass(rays, hits);
+  }
   void traceViews(std::span<const ViewFrame> views, uint32_t resolution,
                   std::span<uint32_t> triangles) override {
     inner_->traceViews(views, resolution, triangles);
@@ -151,8 +155,11 @@ class NaiveDevice final : public Device {
     return {begin, begin + std::min<ptrdiff_t>(most, entries_.end() - begin)};
   }
 
+  void insert(std::span<const uint32_t> triangles, const BatchRay& ray) {
+    for (const uint32_t triangle : triangles) insert(triangle, ray);
+  }
+
   void insert(uint32_t triangle, const BatchRay& ray) {
-    if (triangle == kNoTriangle) return;
     const auto [slot, is_new] = set_.try_emplace(triangle, Found{ray.index, entries_.size()});
     if (is_new) {
       entries_.push_back(entryOf(triangle, ray.ray, 0));
@@ -163,7 +170,7 @@ class NaiveDevice final : public Device {
   }
 
   /// Traces the rays 0 .. count - 1 of generators that makeGenerator() returns, and hands those that have a
-  /// direction with their hits to take(ray, hit), in order.
+  /// direction to take(ray, hit, seen), in order. seen: the triangles that they see, that of the hit first.
   void trace(uint64_t count, auto&& makeGenerator, auto&& take) {
     for (uint64_t first = 0; first < count; first += kChunk) {
       const auto size = static_cast<size_t>(std::min<uint64_t>(kChunk, count - first));
@@ -178,10 +185,16 @@ class NaiveDevice final : public Device {
         }
       });
       inner_->traceRays(rays_, hits_);
+      const std::vector<SeenThrough> glass = inner_->traceGlass(rays_, hits_);
+      auto through = glass.begin();
+      std::vector<uint32_t> seen;
       for (size_t i = 0; i < size; ++i) {
+        seen.clear();
+        if (hits_[i].triangle != kNoTriangle) seen.push_back(hits_[i].triangle);
+        for (; through != glass.end() && through->ray == i; ++through) seen.push_back(through->triangle);
         if (!hasDirection(rays_[i])) continue;
         ++rays_traced_;
-        take(batch_[i], hits_[i]);
+        take(batch_[i], hits_[i], seen);
       }
     }
   }

@@ -42,12 +42,14 @@ uint32_t raysPerItem(const OpenClContext& context) {
   return context.isCpu() ? 8 : 1;
 }
 
-std::string kernelOptions(uint32_t rays_per_item) {
-  return kClBuildOptions + (" -DSL_PACKET=" + std::to_string(rays_per_item));
+std::string kernelOptions(uint32_t rays_per_item, const SurfaceFeatures& features) {
+  return kClBuildOptions + (" -DSL_PACKET=" + std::to_string(rays_per_item)) +
+         (features.any() ? " -DSL_HAS_SURFACES=1" : "") + (features.glass ? " -DSL_HAS_GLASS=1" : "");
 }
 
-void buildKernels(OpenClContext& context, uint32_t rays_per_item, const std::string& extra) {
-  context.build(kProgramSource, kernelOptions(rays_per_item) + " " + extra);
+void buildKernels(OpenClContext& context, uint32_t rays_per_item, const SurfaceFeatures& features,
+                  const std::string& extra) {
+  context.build(kProgramSource, kernelOptions(rays_per_item, features) + " " + extra);
 }
 
 OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& bvh, uint32_t rays_per_item,
@@ -62,6 +64,11 @@ OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& b
   context.write(result.nodes, bvh.nodes2.data(), node_bytes);
   result.triangles = packets ? uploadTriangles<TriangleRecord>(context, scene, bvh, id_offset)
                              : uploadTriangles<TriangleRecordGpu>(context, scene, bvh, id_offset);
+  if (featuresOf(scene.surfaces).any()) {
+    const std::vector<uint32_t> surfaces = packSurfaces(scene.surfaces, bvh.references);
+    result.surfaces = context.buffer(surfaces.size() * 4, "surfaces of the scene");
+    context.write(result.surfaces, surfaces.data(), surfaces.size() * 4);
+  }
   return result;
 }
 

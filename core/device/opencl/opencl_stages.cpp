@@ -29,7 +29,7 @@ OpenClStages::OpenClStages(const std::string& selector, const Scene& scene, cons
                            const DeviceOptions& options)
     : context_(selector), lanes_(options.rays_per_item > 0 ? options.rays_per_item : raysPerItem(context_)) {
   if (options.memory_budget_bytes > 0) context_.limitMemory(options.memory_budget_bytes);
-  buildKernels(context_, lanes_);
+  buildKernels(context_, lanes_, featuresOf(scene.surfaces));
   // Groups of 64 rays keep the cores of a CPU evenly busy and fill the smallest unit of a GPU.
   local_ = options.work_group_size > 0 ? options.work_group_size : std::max(1u, 64 / lanes_);
   for (uint32_t i = 0; i < kGpuStages; ++i) {
@@ -77,20 +77,18 @@ void OpenClStages::run(GpuStage stage, uint64_t count) {
   const ClKernel& kernel = kernels_[uint32_t(stage)];
   launch_.item_count = static_cast<uint32_t>(count);
   if (stage == GpuStage::kTraceRays) {
-    return context_.launch(kernel, items, local, scene_.nodes, scene_.triangles, scene_.reach,
-                           bound(StageBuffer::rays).get(), bound(StageBuffer::hits).get(),
-                           launch_.item_count);
+    return launchOnScene(context_, kernel, items, local, scene_, bound(StageBuffer::rays).get(),
+                         bound(StageBuffer::hits).get(), launch_.item_count);
   }
   if (stage == GpuStage::kTraceViews) {
-    return context_.launch(kernel, items, local, scene_.nodes, scene_.triangles, scene_.reach,
-                           bound(StageBuffer::views).get(), launch_.resolution, launch_.item_count,
-                           bound(StageBuffer::view_triangles).get());
+    return launchOnScene(context_, kernel, items, local, scene_, bound(StageBuffer::views).get(),
+                         launch_.resolution, launch_.item_count, bound(StageBuffer::view_triangles).get());
   }
   std::array<cl_mem, kStageBuffers> buffers;
   const std::vector<StageBuffer>& names = buffers_of_[uint32_t(stage)];
   std::ranges::transform(names, buffers.begin(), [&](StageBuffer name) { return bound(name).get(); });
-  context_.launch(kernel, items, local, scene_.nodes, scene_.triangles, scene_.reach, launch_,
-                  std::span<const cl_mem>(buffers.data(), names.size()));
+  launchOnScene(context_, kernel, items, local, scene_, launch_,
+                std::span<const cl_mem>(buffers.data(), names.size()));
 }
 
 std::array<uint32_t, kCounterWords> OpenClStages::takeCounters() {

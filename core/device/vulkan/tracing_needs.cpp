@@ -34,6 +34,13 @@ VulkanStage tracingStage(const VulkanContext& context, const std::string& name, 
   return VulkanStage::rays(context, name + ".rgen", "nothing.rmiss", "nearest.rchit");
 }
 
+VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size,
+                         const SurfaceFeatures& features) {
+  if (!features.any()) return tracingStage(context, name, group_size);
+  return VulkanStage::compute(context, name + (features.glass ? ".glass.comp" : ".surfaces.comp"),
+                              group_size);
+}
+
 std::string whyNoHemicubes(const VulkanContext& context) {
   if ((context.queueFlags() & VK_QUEUE_GRAPHICS_BIT) == 0) return "no queue for graphics";
   for (const VulkanFeature feature : kDrawing) {

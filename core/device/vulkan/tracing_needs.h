@@ -1,6 +1,7 @@
 #pragma once
 #include <string>
 
+#include "core/scene/surfaces.h"
 #include "core/vulkan/vulkan_stage.h"
 
 namespace sightline {
@@ -17,6 +18,10 @@ const char* vulkanLayout(bool pipelines);
 
 /// A tracing stage (trace_random, ...) of the context's kind. group_size: of ray queries.
 VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size);
+
+/// The same for scenes with these surfaces, on a context of ray queries.
+VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size,
+                         const SurfaceFeatures& features);
 
 /// Why a context cannot draw hemicubes, in one line; empty: it can.
 std::string whyNoHemicubes(const VulkanContext& context);

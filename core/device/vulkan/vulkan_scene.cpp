@@ -28,6 +28,7 @@ void VulkanScene::describe(VulkanRunner& runner) const {
   launch.leaf_ids = leaf_ids.address();
   runner.bind(StageBuffer::place_of, leaf_of);
   launch.corners = corners.address();
+  if (surfaces.bytes() > 0) launch.surfaces = surfaces.address();
 }
 
 VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, const Bvh& bvh,
@@ -35,8 +36,8 @@ VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, 
   checkTraceable(bvh);
   const auto count = scene.triangleCount();
   const uint32_t possible = largestPart(context, count);
-  const LeafParts leaves =
-      splitIntoParts(bvh, count, part_limit > 0 ? std::min(part_limit, possible) : possible);
+  const LeafParts leaves = splitBySurface(
+      splitIntoParts(bvh, count, part_limit > 0 ? std::min(part_limit, possible) : possible), scene.surfaces);
 
   VulkanScene result;
   VulkanUpload upload(context);
@@ -56,6 +57,11 @@ VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, 
   for (const LeafPart& part : leaves.parts) table.push_back(part.first);
   result.part_starts = context.buffer(table.size() * 4, "parts of the scene");
   upload.write(result.part_starts, table.data(), table.size() * 4);
+  if (featuresOf(scene.surfaces).any()) {
+    const std::vector<uint32_t> surfaces = packSurfaces(scene.surfaces, leaves.ids);
+    result.surfaces = context.buffer(surfaces.size() * 4, "surfaces of the scene");
+    upload.write(result.surfaces, surfaces.data(), surfaces.size() * 4);
+  }
   upload.finish();
   result.tree = buildVulkanTree(context, result.corners, leaves.parts);
   return result;

@@ -9,6 +9,7 @@ namespace sightline {
 /// over them.
 struct VulkanScene {
   VulkanBuffer corners, leaf_ids, leaf_of, part_starts;
+  VulkanBuffer surfaces;  ///< without memory where all triangles are opaque from both sides
   VulkanTree tree;
 
   /// Puts the addresses into the runner's launch.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "core/trace/parallel_copy.h"
 #include "core/device/vulkan/tracing_needs.h"
+#include "core/trace/parallel_copy.h"
 
 namespace sightline {
 namespace {
@@ -20,7 +20,8 @@ constexpr uint32_t kGroup = 64;
 
 VulkanStages::VulkanStages(const std::string& selector, const Scene& scene, const Bvh& bvh,
                            const DeviceOptions& options)
-    : context_(selector, tracingNeeds(options.ray_queries), options.memory_budget_bytes),
+    : features_(featuresOf(scene.surfaces)),
+      context_(selector, tracingNeeds(options.ray_queries || features_.any()), options.memory_budget_bytes),
       runner_(context_),
       group_(options.work_group_size > 0 ? options.work_group_size : kGroup),
       scene_(uploadVulkanScene(context_, scene, bvh, options.part_triangles)) {
@@ -73,7 +74,7 @@ void VulkanStages::read(const VulkanBuffer& buffer, void* target, uint64_t bytes
 
 void VulkanStages::run(GpuStage stage, uint64_t count) {
   std::optional<VulkanStage>& made = stages_[uint32_t(stage)];
-  if (!made) made = tracingStage(context_, shaderName(stage), group_);
+  if (!made) made = tracingStage(context_, shaderName(stage), group_, features_);
   runner_.run(*made, static_cast<uint32_t>(count));
 }
 

@@ -42,6 +42,7 @@ class VulkanStages {
   VulkanRunner& runner() { return runner_; }
 
  private:
+  SurfaceFeatures features_;
   VulkanContext context_;
   VulkanRunner runner_;
   uint32_t group_;  ///< work items of a group with ray queries
