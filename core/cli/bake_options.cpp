@@ -57,13 +57,6 @@ CLI::Option* declareParam(CLI::App& command, BakeParams& params, const Param& pa
       ->group(kParamsGroup);
 }
 
-void declareLimits(CLI::App& command, BakeParams& params) {
-  declareParam(command, params, paramOf("max_rays"));
-  declareParam(command, params, paramOf("max_seconds"));
-  declareParam(command, params, paramOf("target_error"))->type_name("E");
-  declareParam(command, params, paramOf("validation_rays"));
-}
-
 }  // namespace
 
 std::vector<std::string> bakeMethods() {
@@ -86,6 +79,13 @@ void declareSampling(CLI::App& command, BakeParams& params) {
         &paramOf("batch_rays"), &paramOf("seed")}) {
     declareParam(command, params, *param);
   }
+}
+
+void declareLimits(CLI::App& command, BakeParams& params) {
+  declareParam(command, params, paramOf("max_rays"));
+  declareParam(command, params, paramOf("max_seconds"));
+  declareParam(command, params, paramOf("target_error"))->type_name("E");
+  declareParam(command, params, paramOf("validation_rays"));
 }
 
 void declareMachine(CLI::App& command, std::string& device, DeviceOptions& options, bool& spatial_splits) {

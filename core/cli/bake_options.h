@@ -33,6 +33,9 @@ std::vector<std::string> bakeMethods();
 /// long as `command`, here and below.
 void declareSampling(CLI::App& command, BakeParams& params);
 
+/// Declares when a cell's bake ends, and how many rays measure it.
+void declareLimits(CLI::App& command, BakeParams& params);
+
 /// Declares where the work is done: --device, --threads, --set, --memory-budget, --spatial-splits.
 void declareMachine(CLI::App& command, std::string& device, DeviceOptions& options, bool& spatial_splits);
 

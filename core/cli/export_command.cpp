@@ -4,13 +4,20 @@
 #include <memory>
 #include <optional>
 
+#include "core/api/session_parts.h"
 #include "core/bake/require_scene.h"
+#include "core/bake/status_line.h"
 #include "core/base/error.h"
+#include "core/base/text.h"
 #include "core/cli/commands.h"
+#include "core/cli/device_check.h"
 #include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
+#include "core/cli/number_checks.h"
+#include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
 #include "core/export/export.h"
+#include "core/export/objects_json.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/obj_text.h"
 #include "core/formats/save_scene.h"
@@ -25,7 +32,35 @@ struct ExportOptions {
   std::filesystem::path pvs, out, scene;
   std::string cell, format;
   SceneLoadOptions load;
+  uint32_t rays = 1'000'000;  ///< of each cell, and below: for objects
+  double least = 0;
+  std::string device = "opencl";
 };
+
+/// What cells see in terms of the scene's objects, all of them in one file.
+void exportObjects(const ExportOptions& options, const TextOutputs& outputs) {
+  if (!options.cell.empty()) {
+    throw Error("--cell: --format objects is of all cells; leave it out", kExitUsage);
+  }
+  const PvsFile pvs = loadFinishedCells(options.pvs);
+  Session session(loadScene(options.scene, options.load), {.device = options.device});
+  requireScene(pvs, session.scene(), options.pvs);
+  const StopSignal stop;
+  StatusLine status;
+  std::vector<ObjectHits> hits;
+  for (uint32_t i = 0; i < pvs.cells.size() && stop.exitCode() == 0; ++i) {
+    status.show([&] { return fmt::format("objects: cell {} of {}", i + 1, pvs.cells.size()); });
+    hits.push_back(countObjectHits(session.parts().tracer(), session.scene(), pvs.cells[i].cell, i,
+                                   pvs.params.seed, options.rays));
+  }
+  status.end();
+  if (stop.exitCode() != 0) {
+    fmt::print("stopped: nothing is written\n");
+    throw ExitCode{stop.exitCode()};
+  }
+  outputs.save(objectsJson(pvs, session.scene(), hits, options.rays, options.least), options.out);
+  fmt::print("{}: objects of {}\n", options.out.string(), counted(hits.size(), "cell"));
+}
 
 /// saveScene goes by the extension, so it must say the same as --format.
 void requireExtension(const ExportOptions& options) {
@@ -42,13 +77,16 @@ void runExport(const ExportOptions& options) {
     throw Error("--output: - is standard output, where a .glb file cannot go; give it a name", kExitUsage);
   }
   if (geometry && !to_output) requireExtension(options);
-  if (geometry && options.scene.empty()) {
+  const bool objects = options.format == "objects";
+  if ((geometry || objects) && options.scene.empty()) {
     throw Error(
         fmt::format("--format {} needs --scene: a .pvs file holds ids, not triangles", options.format),
         kExitUsage);
   }
+  if (!objects && options.cell.empty()) throw Error("--cell is required", kExitUsage);
   requireSeparate(std::array{options.out}, std::array{options.pvs, options.scene});
   const TextOutputs outputs({&options.out, 1});
+  if (objects) return exportObjects(options, outputs);
   const PvsFile pvs = loadFinishedCells(options.pvs);
   const CellPvs& cell = chooseCell(pvs, options.cell, options.pvs);
   std::optional<Scene> scene;
@@ -73,24 +111,47 @@ void runExport(const ExportOptions& options) {
 }  // namespace
 
 void addExportCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("export", "Write one cell's set for other programs");
+  CLI::App* command = app.add_subcommand("export", "Write sets for other programs");
   const auto options = std::make_shared<ExportOptions>();
   command->add_option("pvs", options->pvs, "a bake, or the .part of one in work")
       ->required()
       ->type_name("OUT.pvs");
-  command->add_option("--cell", options->cell, "its name, or its number from 0")
-      ->required()
+  command
+      ->add_option("--cell", options->cell,
+                   "its name, or its number from 0; not for objects, which are of all")
       ->type_name("NAME|INDEX");
-  command->add_option("--format", options->format, "ids, obj, glb or json")
+  command
+      ->add_option(
+          "--format", options->format,
+          "ids, obj, glb or json of one cell, or objects: what all cells see of the scene's objects, and how "
+          "much of the view each takes (docs/report.md)")
       ->required()
-      ->check(oneOf({"ids", "obj", "glb", "json"}))
+      ->check(oneOf({"ids", "obj", "glb", "json", "objects"}))
       ->type_name("FORMAT");
   command->add_option("-o,--output", options->out, "- is standard output, but for glb")
       ->required()
       ->type_name("FILE");
-  command->add_option("--scene", options->scene, "the baked scene: for obj and glb, and for json's objects")
+  command
+      ->add_option("--scene", options->scene,
+                   "the baked scene: for obj, glb and objects, and for json's objects")
       ->type_name("SCENE");
   declareLoading(*command, options->load, kAsBakeDid);
+  const char* const group = "For --format objects";
+  command->add_option("--rays", options->rays, "random rays of each cell, which share the view among objects")
+      ->transform(wholeNumber(1, kMostObjectRays))
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(group);
+  command->add_option("--least", options->least, "leave out objects that take a smaller share of the view")
+      ->check(between(0.0, 1.0))
+      ->type_name("SHARE")
+      ->capture_default_str()
+      ->group(group);
+  command->add_option("--device", options->device, "that traces them: cpu, opencl or vulkan")
+      ->check(deviceName())
+      ->type_name("NAME")
+      ->capture_default_str()
+      ->group(group);
   command->callback([options] { runExport(*options); });
 }
 

@@ -4,6 +4,10 @@ namespace sightline {
 
 void declareLoading(CLI::App& command, SceneLoadOptions& options, const char* repair_help) {
   command.add_flag("--repair", options.repair, repair_help);
+  declareForeign(command, options);
+}
+
+void declareForeign(CLI::App& command, SceneLoadOptions& options) {
   command
       .add_option("--ignore-extension", options.ignored_extensions,
                   "load a glTF file that requires this extension, without what it would add; repeatable")

@@ -10,6 +10,9 @@ namespace sightline {
 void declareLoading(CLI::App& command, SceneLoadOptions& options,
                     const char* repair_help = "drop broken triangles instead of refusing the scene");
 
+/// The last two alone, for a command that takes no damaged scenes.
+void declareForeign(CLI::App& command, SceneLoadOptions& options);
+
 /// repair_help of commands that take a bake of the scene.
 inline constexpr const char* kAsBakeDid = "load the scene as bake --repair did";
 

@@ -25,6 +25,10 @@ class GltfData {
 
   /// Adds a view of these bytes to the document, which must be the one that this was made with.
   size_t addView(GltfDocument& document, std::vector<uint8_t> bytes);
+
+  /// Bytes of a buffer: those that the document claims, or fewer, if there are fewer. Throws Error.
+  std::span<const uint8_t> buffer(size_t index);
+
   /// Bytes that a uri names, in it or in a file beside the document. place: of the uri. Throws Error.
   std::vector<uint8_t> resource(const std::string& uri, const std::string& place) const;
 
@@ -32,7 +36,6 @@ class GltfData {
   uint64_t bytesOfUris() const;
 
  private:
-  std::span<const uint8_t> buffer(size_t index);
   std::span<const uint8_t> part(size_t buffer, uint64_t offset, uint64_t length, const std::string& place);
   std::vector<uint8_t> decompress(const GltfCompression& compression, uint64_t byte_length,
                                   const std::string& place);

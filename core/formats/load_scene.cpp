@@ -43,7 +43,7 @@ Scene parseScene(FileBytes bytes, const std::filesystem::path& file, const Scene
     if (std::optional<FileBytes> text = fromUtf16(bytes.view())) bytes = std::move(*text);
     SceneLoader* load = loaderOf(bytes.view(), file);
     try {
-      return load(bytes.view(), file, options, glm::dvec3(0.0));
+      return load(bytes.view(), file, options, options.offset.value_or(glm::dvec3(0.0)));
     } catch (const NeedsOffset& needs) {
       // Read again, rather than moved, so that each coordinate is rounded once, from all of its digits.
       return load(bytes.view(), file, options, needs.offset);

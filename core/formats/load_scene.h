@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct SceneLoadOptions {
   /// Read what the scene names (buffers, materials, pictures) wherever it lies, not only in the scene's
   /// folder and those below it.
   bool allow_external = false;
+  /// What is taken off the coordinates (Scene::offset), whatever the scene needs: for scenes that are looked
+  /// at together.
+  std::optional<glm::dvec3> offset = {};
 };
 
 /// Loads OBJ, glTF 2.0 (.gltf, .glb), PLY, or a 3D Tile (.b3dm): by what the file holds, and where that does

@@ -47,6 +47,7 @@ ObjLines::ObjLines(std::string_view text) : rest_(text) {
 bool ObjLines::next() {
   if (rest_.empty()) return false;
   number_ = taken_ + 1;
+  raw_ = rest_;
   line_ = takeLine();
   const size_t keyword = line_.find_first_not_of(kBlanks);
   if (keyword == std::string_view::npos || (line_[keyword] != 'v' && line_[keyword] != 'f')) return true;

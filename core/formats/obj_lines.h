@@ -23,12 +23,15 @@ class ObjLines {
   std::string_view line() const { return line_; }
   /// Of the file's lines, from 1; of several that are joined the first.
   uint64_t number() const { return number_; }
+  /// The bytes of the text that it stands in, line ends, comments and backslashes included.
+  std::string_view raw() const { return raw_.substr(0, raw_.size() - rest_.size()); }
 
  private:
   std::string_view takeLine();
   void joinContinued();
 
   std::string_view rest_;
+  std::string_view raw_;  ///< from the line's begin to the text's end
   std::string_view line_;
   std::string joined_;  ///< what line_ shows if it is more than one line of the file
   uint64_t number_ = 0;

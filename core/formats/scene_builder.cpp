@@ -230,7 +230,7 @@ Scene SceneBuilder::finish(const std::string& file) {
   }
   if (!scene_.surfaces.empty()) scene_.surfaces.words.resize(scene_.triangles.size(), 0u);
   scene_.degenerate_triangles = countDegenerate(scene_);
-  if (scene_.offset == glm::dvec3(0.0)) {
+  if (scene_.offset == glm::dvec3(0.0) && may_need_offset_) {
     const glm::dvec3 offset = neededOffset(scene_, remainders_);
     if (offset != glm::dvec3(0.0)) throw NeedsOffset(offset);
   }

@@ -43,7 +43,7 @@ class SceneBuilder {
 
   /// offset: of the scene that is made.
   SceneBuilder(const SceneLoadOptions& options, const glm::dvec3& offset)
-      : repair_(options.repair), faces_(options.faces) {
+      : repair_(options.repair), faces_(options.faces), may_need_offset_(!options.offset) {
     scene_.offset = offset;
   }
 
@@ -104,6 +104,7 @@ class SceneBuilder {
 
   bool repair_;
   bool faces_;
+  bool may_need_offset_;
   uint32_t face_ = ~0u;  ///< wraps to 0 with the first; only faces without triangles can be more than 2^32
   Scene scene_;
   SceneObject object_;

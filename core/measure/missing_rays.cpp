@@ -3,37 +3,14 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-
 #include "core/base/error.h"
-#include "core/sampling/face_rays.h"
-#include "core/shared/random_ray.h"
+#include "core/sampling/numbered_rays.h"
 
 namespace sightline {
 namespace {
 
 /// Rays that are traced at once: bounds the memory.
 constexpr uint32_t kChunk = 1u << 21;
-
-/// Random rays of a cell by their number, the faces one after the other.
-class NumberedRays {
- public:
-  NumberedRays(const ViewCell& cell, uint32_t cell_index, uint64_t seed, uint32_t rays)
-      : faces_(cellFaces(cell)), shifts_(haltonShifts(seed, cell_index, RandomUse::kValidation)) {
-    for (const uint32_t count : raysByArea(faces_, rays))
-      ends_.push_back(count + (ends_.empty() ? 0 : ends_.back()));
-  }
-
-  Ray at(uint32_t number) const {
-    const auto face = std::upper_bound(ends_.begin(), ends_.end(), number) - ends_.begin();
-    return randomRay(number, 0, faces_[size_t(face)], shifts_);
-  }
-
- private:
-  std::vector<Face> faces_;
-  uvec4 shifts_;
-  std::vector<uint32_t> ends_;
-};
 
 }  // namespace
 
@@ -43,7 +20,7 @@ std::vector<std::vector<uint64_t>> countMissingRays(Tracer& tracer, const ViewCe
   if (rays < 1 || rays > kMostMissingRays) {
     throw Error(fmt::format("missing rays must be 1 .. {}", kMostMissingRays), kExitUsage);
   }
-  const NumberedRays numbered(cell, cell_index, seed, rays);
+  const NumberedRays numbered(cellFaces(cell), haltonShifts(seed, cell_index, RandomUse::kValidation), rays);
   std::vector<std::vector<uint16_t>> levels(sets.size());
   std::vector<std::vector<uint64_t>> by_level(sets.size());  // rays that the first so many prefixes miss
   tbb::parallel_for(size_t(0), sets.size(), [&](size_t s) {

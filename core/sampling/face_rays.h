@@ -9,7 +9,7 @@
 namespace sightline {
 
 /// What random rays are for: each use has rays of its own.
-enum class RandomUse : uint32_t { kSampling = 0, kValidation = 1 };
+enum class RandomUse : uint32_t { kSampling = 0, kValidation = 1, kCounting = 2, kChecking = 3 };
 
 /// Random shifts (Cranley and Patterson 1976) of the four Halton bases, each below its period.
 uvec4 haltonShifts(uint64_t seed, uint32_t cell_index, RandomUse use);

@@ -1,0 +1,33 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/cell/view_cell.h"
+#include "core/scene/scene.h"
+#include "core/trace/tracer.h"
+
+namespace sightline {
+
+/// A scene and what traces rays in it.
+struct TracedScene {
+  const Scene& scene;
+  Tracer& tracer;
+};
+
+/// Told now and then of the rays so far; false ends the tracing early. May be empty.
+using RayProgress = std::function<bool(uint64_t rays)>;
+
+/// Marks in `seen` (by id) what `rays` random rays of the cell, 1 .. 2^30, meet first; they are others than
+/// those of a bake with this seed and cell index. Returns how many triangles were not marked before. Throws
+/// Error.
+uint64_t markSeen(const TracedScene& scene, const ViewCell& cell, uint32_t cell_index, uint64_t seed,
+                  uint32_t rays, std::vector<bool>& seen, const RayProgress& progress = {});
+
+/// Of `rays` random rays of the cell, others again: how many meet first, in the original scene, a triangle
+/// that is not what they meet first in the other one: none there, or one with other corners. Where progress
+/// ends it early, `rays` becomes what was traced. rays: 1 .. 2^30. Throws Error.
+uint64_t countLostRays(const TracedScene& original, const TracedScene& stripped, const ViewCell& cell,
+                       uint32_t cell_index, uint64_t seed, uint32_t& rays, const RayProgress& progress = {});
+
+}  // namespace sightline

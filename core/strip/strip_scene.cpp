@@ -1,0 +1,93 @@
+#include "core/strip/strip_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/base/error.h"
+#include "core/io/file_io.h"
+#include "core/strip/strip_formats.h"
+
+namespace sightline {
+namespace {
+
+constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
+
+bool isPly(std::string_view bytes) {
+  if (bytes.starts_with(kUtf8Mark)) bytes.remove_prefix(kUtf8Mark.size());
+  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
+}
+
+bool isUtf16(std::string_view bytes) {
+  return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+}
+
+Stripped strip(const StripInput& input) {
+  const std::string name = input.file.string();
+  if (isUtf16(input.bytes)) {
+    throw Error(fmt::format("{}: is UTF-16, which is not written; save it as UTF-8 first", name));
+  }
+  if (input.bytes.starts_with("b3dm")) {
+    throw Error(fmt::format("{}: is a 3D Tile, which is not written; take the glTF out of it first", name));
+  }
+  if (isPly(input.bytes)) return stripPly(input);
+  return input.scene.objects[0].part ? stripGltf(input) : stripObj(input);
+}
+
+void refuseOtherKind(const std::filesystem::path& file, const std::filesystem::path& out) {
+  const std::string extension = lowerExtension(file);
+  if (lowerExtension(out) == extension) return;
+  throw Error(fmt::format("{}: must end with {}, as the scene does: a stripped scene stays of its kind",
+                          out.string(), extension),
+              kExitUsage);
+}
+
+}  // namespace
+
+std::vector<bool> keptFaces(const StripInput& input, StripReport& report) {
+  const std::vector<uint32_t>& faces = input.scene.faces;
+  std::vector<bool> kept(faces.empty() ? 0 : faces.back() + size_t(1), false);
+  for (size_t id = 0; id < faces.size(); ++id) {
+    if (input.seen[id]) kept[faces[id]] = true;
+  }
+  for (const SceneObject& object : input.scene.objects) {
+    const auto first = faces.begin() + object.first_triangle;
+    const bool any =
+        std::any_of(first, first + object.triangle_count, [&](uint32_t face) { return kept[face]; });
+    if (any) continue;
+    if (input.options.keep_objects) {
+      kept[*first] = true;
+    } else {
+      ++report.objects_gone;
+    }
+  }
+  report.triangles =
+      uint64_t(std::count_if(faces.begin(), faces.end(), [&](uint32_t face) { return kept[face]; }));
+  return kept;
+}
+
+StripReport stripScene(const Scene& scene, const std::filesystem::path& file, const std::vector<bool>& seen,
+                       const StripOptions& options, const std::filesystem::path& out) {
+  refuseOtherKind(file, out);
+  if (std::find(seen.begin(), seen.end(), true) == seen.end()) {
+    throw Error(fmt::format("{}: no triangle of it is seen, so nothing would be left; check the cells",
+                            file.string()));
+  }
+  const FileBytes bytes = readFile(file);
+  Stripped stripped = strip({bytes.view(), file, scene, seen, options, out});
+  for (size_t i = 0; i + 1 < stripped.files.size(); ++i) {
+    const std::filesystem::path& buffer = stripped.files[i].path;
+    std::error_code ignored;
+    if (std::filesystem::exists(buffer, ignored) && !options.overwrite) {
+      throw Error(
+          fmt::format("{}: is there already, a buffer of {} would replace it; name another output, "
+                      "or --overwrite it",
+                      buffer.string(), out.string()));
+    }
+    stripped.report.buffers.push_back(buffer);
+  }
+  for (const StrippedFile& made : stripped.files) saveText(made.bytes, made.path);
+  return stripped.report;
+}
+
+}  // namespace sightline
