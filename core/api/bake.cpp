@@ -1,16 +1,21 @@
 #include "core/api/bake.h"
 
+#include <algorithm>
+#include <memory>
+
 #include "core/api/bake_steps.h"
 #include "core/api/session_parts.h"
 #include "core/base/error.h"
 #include "core/cell/cell_problem.h"
 #include "core/device/registry/device_names.h"
 #include "core/gvs/algorithm_revision.h"
+#include "core/gvs/leaks.h"
+#include "core/scene/seen_through.h"
 
 namespace sightline {
 
 PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const BakeParams& params,
-                   Witnesses witnesses) {
+                   const BakeContent& content) {
   const std::string& device = session.options().device;
   checkParams(params);
   requireMethodOn(params.method, device);
@@ -24,20 +29,58 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
   inputs.triangle_count = session.scene().triangleCount();
   inputs.scene_name = session.options().scene_name;
   inputs.params = params;
-  inputs.has_witnesses = witnesses == Witnesses::kKeep;
+  inputs.has_witnesses = content.witnesses == Witnesses::kKeep;
+  inputs.doors = content.doors;
+  inputs.see_through = session.options().see_through;
   inputs.offset = offset;
   inputs.planned = std::move(planned);
+  inputs.version = versionOf(inputs);
   return inputs;
 }
 
+namespace {
+
+/// What the cell sees besides where the doors hide nothing: what `device` finds, for which they are glass,
+/// and not `closed`.
+OpenSet bakeOpen(Device& device, const Scene& scene, uint32_t index, const BakeParams& params,
+                 const CellPvs& closed, const BakeHooks& hooks) {
+  CellPvs pvs = bakeCell(device, scene, closed.cell, index, params, hooks);
+  OpenSet open;
+  open.stats = pvs.stats;
+  for (size_t i = 0; i < pvs.triangles.size(); ++i) {
+    if (std::binary_search(closed.triangles.begin(), closed.triangles.end(), pvs.triangles[i])) continue;
+    open.triangles.push_back(pvs.triangles[i]);
+    open.witnesses.push_back(pvs.witnesses[i]);
+  }
+  return open;
+}
+
+}  // namespace
+
 CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& events) {
-  Device& device = session.parts().device(inputs.params.method);
-  return [&](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
+  const float hole = inputs.params.smallest_hole;
+  Device& device = session.parts().device(inputs.params.method, hole);
+  std::shared_ptr<Session> open;
+  if (!inputs.doors.empty()) {
+    open = std::make_shared<Session>(seenThrough(session.scene(), inputs.doors), session.options());
+  }
+  return [&, open, hole](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
     BakeTrace trace;
+    const BakeHooks hooks{progress, events.stop, nullptr};
     CellPvs pvs = bakeCell(device, session.scene(), cell, index, inputs.params,
                            {progress, events.stop, events.grown ? &trace : nullptr});
+    if (events.leaks && hole == 0) {
+      events.leaks(index, findLeaks(device, session.scene(), pvs, leakWidth(cell)));
+    }
+    if (open) {
+      Device& glass_doors = open->parts().device(inputs.params.method, hole);
+      pvs.open = bakeOpen(glass_doors, open->scene(), index, inputs.params, pvs, hooks);
+    }
     if (events.grown) events.grown(index, std::move(trace));
-    if (!inputs.has_witnesses) pvs.witnesses.clear();
+    if (!inputs.has_witnesses) {
+      pvs.witnesses.clear();
+      if (pvs.open) pvs.open->witnesses.clear();
+    }
     return pvs;
   };
 }
@@ -53,8 +96,8 @@ bool runBake(Session& session, Bake& bake, const BakeEvents& events) {
 }
 
 PvsFile bake(Session& session, std::span<const ViewCell> cells, const BakeParams& params,
-             const BakeEvents& events, Witnesses witnesses) {
-  PvsFile pvs = bakeInputs(session, cells, params, witnesses);
+             const BakeEvents& events, const BakeContent& content) {
+  PvsFile pvs = bakeInputs(session, cells, params, content);
   const CellBaker baker = cellBaker(session, pvs, events);
   const std::string device = deviceText(session);
   for (uint32_t index = 0; index < pvs.planned.size(); ++index) {
@@ -74,7 +117,7 @@ PvsFile bake(Session& session, std::span<const ViewCell> cells, const BakeParams
 
 bool bakeToFile(Session& session, std::span<const ViewCell> cells, const BakeOutput& output,
                 const BakeParams& params, const BakeEvents& events) {
-  Bake bake(bakeInputs(session, cells, params, output.witnesses), output.file, output.overwrite);
+  Bake bake(bakeInputs(session, cells, params, output.content), output.file, output.overwrite);
   return bake.complete() || runBake(session, bake, events);
 }
 

@@ -1,9 +1,12 @@
 #pragma once
 #include <filesystem>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "core/api/session.h"
 #include "core/bake/bake_events.h"
+#include "core/base/named_triangles.h"
 #include "core/cell/view_cell.h"
 #include "core/pvs/pvs_file.h"
 
@@ -11,6 +14,17 @@ namespace sightline {
 
 /// Whether a bake keeps a ray for each triangle that hits it first: 28 bytes a triangle.
 enum class Witnesses { kDrop, kKeep };
+
+/// What a bake holds besides plain sets.
+struct BakeContent {
+  BakeContent(Witnesses to_keep = Witnesses::kDrop, std::vector<NamedTriangles> that_open = {})
+      : witnesses(to_keep), doors(std::move(that_open)) {}
+
+  Witnesses witnesses;
+  /// Objects that open (findObjects in core/scene/find_objects.h): each cell gets a second set, of what it
+  /// sees besides when they hide nothing, and is baked twice. Needs the memory of two sessions.
+  std::vector<NamedTriangles> doors;
+};
 
 /// Computes the set of each cell on the session's device, one cell after the other, in memory. Equal scene,
 /// cells and parameters give equal sets, bit for bit, whatever the number of threads, on "cpu" and every
@@ -22,12 +36,12 @@ enum class Witnesses { kDrop, kKeep };
 /// Throws Error that names what is wrong with cells or parameters before any work, or what failed; nothing is
 /// returned then.
 PvsFile bake(Session& session, std::span<const ViewCell> cells, const BakeParams& params = {},
-             const BakeEvents& events = {}, Witnesses witnesses = Witnesses::kDrop);
+             const BakeEvents& events = {}, const BakeContent& content = {});
 
 /// Where a bake goes and what it keeps.
 struct BakeOutput {
   std::filesystem::path file = {};  ///< FILE.part is beside it until all cells are there
-  Witnesses witnesses = Witnesses::kDrop;
+  BakeContent content = {};
   bool overwrite = false;  ///< replace a bake with other inputs, in FILE or FILE.part
 };
 

@@ -11,7 +11,7 @@ namespace sightline {
 /// The inputs, as the head of the file that is to be made. Checks the parameters, and the session's device as
 /// far as it decides the result; does not open it. Throws Error.
 PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const BakeParams& params,
-                   Witnesses witnesses);
+                   const BakeContent& content);
 
 /// Bakes single cells of these inputs on the session's device, which it opens. Session, inputs and events
 /// must outlive it.

@@ -1,17 +1,34 @@
 #include "core/api/session.h"
 
 #include "core/api/session_parts.h"
+#include "core/base/error.h"
 #include "core/device/naive/naive_device.h"
 #include "core/device/registry/make_device.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/scene_tree.h"
+#include "core/scene/seen_through.h"
 
 namespace sightline {
 
-SessionParts::SessionParts(Scene scene_to_own, SessionOptions options_to_keep)
-    : scene(std::move(scene_to_own)), options(std::move(options_to_keep)) {
+namespace {
+
+/// Checks the scene. Its hash, if that is not that of the session's own scene.
+std::optional<uint64_t> hashAhead(const Scene& scene, const SessionOptions& options) {
   checkScene(scene);
+  for (const NamedTriangles& object : options.see_through) {
+    if (uint64_t(object.first) + object.count <= scene.triangles.size()) continue;
+    throw Error("an object to see through is beyond the scene: " + object.name, kExitUsage);
+  }
+  if (options.see_through.empty()) return {};
+  return hashScene(scene);
 }
+
+}  // namespace
+
+SessionParts::SessionParts(Scene scene_to_own, SessionOptions options_to_keep)
+    : hash(hashAhead(scene_to_own, options_to_keep)),
+      scene(seenThrough(std::move(scene_to_own), options_to_keep.see_through)),
+      options(std::move(options_to_keep)) {}
 
 const Bvh& SessionParts::tree() {
   if (!bvh) {
@@ -23,12 +40,14 @@ const Bvh& SessionParts::tree() {
   return *bvh;
 }
 
-Device& SessionParts::device(Method method) {
-  std::unique_ptr<Device>& wanted = method == Method::kNaive ? naive : plain;
-  if (wanted) return *wanted;
+Device& SessionParts::device(Method method, float hole) {
+  const bool on_host = method == Method::kNaive || hole > 0;
+  std::unique_ptr<Device>& wanted = on_host ? naive : plain;
+  if (wanted && (!on_host || hole == smallest_hole)) return *wanted;
+  wanted.reset();
   requireDevice(options.device);  // before the work that the tree takes
   wanted = makeDevice(options.device, scene, tree(), options.device_options);
-  if (method == Method::kNaive) wanted = makeNaiveDevice(std::move(wanted), scene);
+  if (on_host) wanted = makeNaiveDevice(std::move(wanted), scene, smallest_hole = hole);
   return *wanted;
 }
 

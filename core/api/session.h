@@ -3,7 +3,9 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
+#include "core/base/named_triangles.h"
 #include "core/device/device_options.h"
 #include "core/scene/scene.h"
 #include "core/shared/types.h"
@@ -12,12 +14,15 @@
 namespace sightline {
 
 /// Where and how a session works. Nothing of it but the kind of intersection test (device "vulkan") changes
-/// what is found.
+/// what is found, and see_through.
 struct SessionOptions {
   std::string device = "cpu";         ///< a name as core/device/registry/device_names.h has them, of one that
                                       ///< bakes
   DeviceOptions device_options = {};  ///< threads are those of the tree, too
   bool spatial_splits = false;  ///< a tree that takes longer to build: faster rays where triangles are long
+  std::vector<NamedTriangles> see_through =
+      {};                       ///< objects that are seen but hide nothing, for all rays of the
+                                ///< session (core/scene/find_objects.h). Ascending, disjoint.
   std::string scene_name = {};  ///< for people, kept in .pvs files: the scene's file without its folder
 };
 

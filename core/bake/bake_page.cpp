@@ -190,6 +190,41 @@ void addWarnings(HtmlReport& html, const BakeReport& report) {
   if (!table.rows.empty()) html.table(table);
 }
 
+/// Triangles that only gaps let through, a row a cell that has some.
+void addLeaks(HtmlReport& html, const BakeReport& report) {
+  ReportTable table{.caption = "Leaks: seen only through narrow gaps",
+                    .columns = {"cell", "narrower than", "triangles", "of the set", "a place"}};
+  for (size_t i = 0; i < report.leaks.size(); ++i) {
+    if (!report.leaks[i] || report.leaks[i]->triangles == 0) continue;
+    const Leaks& leaks = *report.leaks[i];
+    table.rows.push_back(
+        {report.cells[i].cell.name, fmt::format("{:.3g}", leaks.width), std::to_string(leaks.triangles),
+         shareText(double(leaks.triangles) / std::max(1u, report.cells[i].pvs_size)),
+         fmt::format("({:.6g}, {:.6g}, {:.6g})", leaks.place.x, leaks.place.y, leaks.place.z)});
+  }
+  if (!table.rows.empty()) html.table(table);
+}
+
+/// What the doors' opening adds to each cell's set.
+void addDoors(HtmlReport& html, const BakeReport& report) {
+  if (report.doors.empty()) return;
+  html.section("Doors");
+  std::string names;
+  for (const NamedTriangles& door : report.doors) names += (names.empty() ? "" : ", ") + door.name;
+  html.text(fmt::format("{}: {}. Closed, they are part of the sets above; open, they hide nothing.",
+                        counted(report.doors.size(), "object"), names));
+  ReportTable table{.columns = {"cell", "closed", "open adds", "open", "rays", "seconds"}};
+  for (const CellSummary& cell : report.cells) {
+    if (!cell.open_stats) continue;
+    const CellStats& open = *cell.open_stats;
+    table.rows.push_back({cell.cell.name, std::to_string(cell.pvs_size), std::to_string(cell.open_added),
+                          std::to_string(cell.pvs_size + cell.open_added),
+                          shortCount(open.random.rays + open.border.rays + open.reverse.rays),
+                          fmt::format("{:.2f}", open.seconds)});
+  }
+  html.table(table);
+}
+
 void addGrowth(HtmlReport& html, const BakeReport& report, const std::vector<Curve>& curves) {
   html.section("How the sets grew");
   const size_t earlier = report.cells.size() - recorded(curves);
@@ -265,6 +300,8 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
           "triangle outside the set.") +
       (report.params.target_error > 0 ? " Error at most: the same of wrong pixels." : ""));
   addWarnings(html, report);
+  addLeaks(html, report);
+  addDoors(html, report);
   addGrowth(html, report, page.curves);
   addPictures(html, page.pictures);
   addStages(html, report, page.curves);

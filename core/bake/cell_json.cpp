@@ -44,6 +44,16 @@ void addCellStatistics(Json& json, const CellSummary& cell, uint64_t triangles) 
   json["error_bound_tests"] = stats.bound_tests;
   json["peak_device_bytes"] = stats.peak_device_bytes;
   json["device"] = cell.device;
+  if (!cell.open_stats) return;
+  const CellStats& open = *cell.open_stats;
+  json["open"] = {{"added", cell.open_added},
+                  {"set_hash", hashText(cell.open_hash)},
+                  {"rays", open.random.rays + open.border.rays + open.reverse.rays},
+                  {"iterations", open.iterations},
+                  {"stop_reason", stopReasonName(open.stop)},
+                  {"validation_rays", open.validation_rays},
+                  {"missing_rays", open.missing_rays},
+                  {"seconds", open.seconds}};
 }
 
 std::string jsonText(const Json& json, int indent) {

@@ -32,6 +32,26 @@ Json toJson(const std::vector<CellWarning>& warnings) {
   return list;
 }
 
+Json toJson(const std::optional<Leaks>& leaks) {
+  if (!leaks) return nullptr;
+  Json json = {{"narrower_than", leaks->width},
+               {"triangles", leaks->triangles},
+               {"rays", leaks->rays},
+               {"seconds", leaks->seconds}};
+  if (leaks->triangles == 0) return json;
+  json["first_triangle"] = leaks->first_triangle;
+  json["place"] = {leaks->place.x, leaks->place.y, leaks->place.z};
+  return json;
+}
+
+Json toJson(const std::vector<NamedTriangles>& objects) {
+  Json list = Json::array();
+  for (const NamedTriangles& object : objects) {
+    list.push_back({{"name", object.name}, {"first_triangle", object.first}, {"triangles", object.count}});
+  }
+  return list;
+}
+
 }  // namespace
 
 TreeSummary summarize(const Bvh& bvh) {
@@ -82,6 +102,7 @@ std::string reportJson(const BakeReport& report) {
     Json json = cellToJson(cell.cell, report.scene.offset);
     json["warnings"] = toJson(warningsOf(report, i));
     addCellStatistics(json, cell, report.scene.triangles);
+    json["leaks"] = i < report.leaks.size() ? toJson(report.leaks[i]) : Json(nullptr);
     cells.push_back(json);
   }
   const Json json = {{"sightline", report.version},
@@ -95,7 +116,10 @@ std::string reportJson(const BakeReport& report) {
                        {"spatial_splits", report.spatial_splits},
                        {"witnesses", report.witnesses},
                        {"repair", report.repair},
-                       {"ignored_extensions", report.ignored_extensions}}},
+                       {"ignored_extensions", report.ignored_extensions},
+                       {"doors", toJson(report.doors)},
+                       {"see_through", toJson(report.see_through)},
+                       {"smallest_hole", report.params.smallest_hole > 0}}},
                      {"scene", toJson(report.scene)},
                      {"tree", toJson(report.tree, report.scene.triangles)},
                      {"planned_cells", report.planned_cells},
@@ -119,6 +143,16 @@ std::vector<std::string> sceneWarnings(const SceneSummary& scene) {
   std::vector<std::string> warnings = scene.warnings;
   if (!materials.empty()) warnings.insert(warnings.begin(), materials);
   return warnings;
+}
+
+std::string leaksText(const Leaks& leaks) {
+  if (leaks.triangles == 0) return {};
+  return fmt::format(
+      "{} of the set {} seen only through gaps narrower than {:.3g}, triangle {} through one at ({:.6g}, "
+      "{:.6g}, "
+      "{:.6g}); --smallest-hole {:.3g} closes them",
+      counted(leaks.triangles, "triangle"), leaks.triangles == 1 ? "is" : "are", leaks.width,
+      leaks.first_triangle, leaks.place.x, leaks.place.y, leaks.place.z, leaks.width);
 }
 
 uint64_t peakProcessBytes() {

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "bvh/bvh.h"
+#include "core/base/named_triangles.h"
 #include "core/device/device.h"
+#include "core/gvs/leaks.h"
 #include "core/pvs/cell_summary.h"
 #include "core/scene/cell_check.h"
 #include "core/scene/scene.h"
@@ -29,8 +31,8 @@ struct SceneSummary {
   uint64_t hash = 0;
   uint64_t triangles = 0, vertices = 0, objects = 0;
   uint64_t degenerate = 0, repaired = 0, alpha = 0, glass = 0, single_sided = 0, hidden_nodes = 0;
-  uint64_t opaque_masks = 0;  ///< triangles whose masks were loaded as opaque
-  SurfaceCounts surfaces;     ///< what rays meet that does not simply end them
+  uint64_t opaque_masks = 0;          ///< triangles whose masks were loaded as opaque
+  SurfaceCounts surfaces;             ///< what rays meet that does not simply end them
   std::vector<std::string> warnings;  ///< of loading (Scene)
   glm::dvec3 offset{0.0};             ///< of the scene
 };
@@ -49,6 +51,9 @@ struct BakeReport {
   BakeParams params;
   std::vector<CellSummary> cells;                  ///< finished, in order
   std::vector<std::vector<CellWarning>> warnings;  ///< checkCells of all planned cells; empty: not checked
+  std::vector<std::optional<Leaks>> leaks;         ///< of `cells`, as far as this run baked them and looked
+  std::vector<NamedTriangles> see_through;         ///< of the bake, too
+  std::vector<NamedTriangles> doors;               ///< of the bake
   uint64_t planned_cells = 0;
   uint64_t resumed_cells = 0;       ///< of `cells`: baked by an earlier run
   double seconds = 0;               ///< of this run: loading, tree, cells
@@ -62,9 +67,12 @@ std::vector<CellWarning> warningsOf(const BakeReport& report, size_t index);
 std::string reportJson(const BakeReport& report);
 
 /// A line each for what is traced as something simpler than the file says (masks as opaque, single-sided as
-/// two-sided, each only by the options of loading), for nodes left out, and for each warning of loading; empty if there is
-/// nothing.
+/// two-sided, each only by the options of loading), for nodes left out, and for each warning of loading;
+/// empty if there is nothing.
 std::vector<std::string> sceneWarnings(const SceneSummary& scene);
+
+/// What there is to say about the leaks of a cell, after its name; empty: nothing.
+std::string leaksText(const Leaks& leaks);
 
 /// Most memory that this process has held, in bytes (VmHWM).
 uint64_t peakProcessBytes();

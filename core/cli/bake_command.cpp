@@ -24,6 +24,7 @@
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
 #include "core/picture/cell_pictures.h"
+#include "core/scene/find_objects.h"
 #include "core/trace/cpu_tracer.h"
 
 namespace sightline {
@@ -43,6 +44,8 @@ BakeReport startReport(const BakeOptions& options, const Scene& scene, const Bak
   report.repair = options.load.repair;
   report.ignored_extensions = options.load.ignored_extensions;
   report.params = options.params;
+  report.doors = bake.head().doors;
+  report.see_through = bake.head().see_through;
   report.planned_cells = bake.head().planned.size();
   report.resumed_cells = bake.resumed();
   for (const std::string& warning : sceneWarnings(report.scene)) say("warning: " + warning);
@@ -54,10 +57,19 @@ void sayKept(const Bake& bake, const char* why) {
                   bake.finished().size(), bake.head().planned.size(), bake.partFile().string()));
 }
 
-SessionOptions sessionOptions(const BakeOptions& options) {
+void sayDoors(const std::vector<NamedTriangles>& doors) {
+  if (doors.empty()) return;
+  uint64_t triangles = 0;
+  for (const NamedTriangles& door : doors) triangles += door.count;
+  say(fmt::format("doors: {} of {}, each cell is baked with them closed and open",
+                  counted(doors.size(), "object"), counted(triangles, "triangle")));
+}
+
+SessionOptions sessionOptions(const BakeOptions& options, const Scene& scene) {
   return {.device = options.device,
           .device_options = options.device_options,
           .spatial_splits = options.spatial_splits,
+          .see_through = findObjects(scene, options.see_through, "--see-through"),
           .scene_name = options.scene.filename().string()};
 }
 
@@ -67,7 +79,7 @@ void openDevice(const BakeOptions& options, Session& session, BakeReport& report
   report.tree = summarize(session.parts().tree());
   say(fmt::format("tree: built in {}, SAH cost {:.1f}, depth {}", shortDuration(report.tree->build_seconds),
                   report.tree->sah_cost, report.tree->depth));
-  Device& device = session.parts().device(options.params.method);
+  Device& device = session.parts().device(options.params.method, options.params.smallest_hole);
   report.device = device.info();
   report.set = device.counters().hash_set ? "hash" : "array";
   say(fmt::format("device: {}, {}", report.device->id, report.device->name));
@@ -112,7 +124,8 @@ void warnOfCells(const BakeOptions& options, Session& session, const Bake& bake,
 }
 
 /// Bakes what is missing, with progress, and keeps how the sets grew for the page. Returns the exit code.
-int bakeCells(Session& session, Bake& bake, BakePage& page, CellWarningPrinter& warnings) {
+int bakeCells(Session& session, Bake& bake, BakePage& page, BakeReport& report,
+              CellWarningPrinter& warnings) {
   if (!bake.partProblem().empty()) {
     say(fmt::format("{}: cut off or damaged after {} ({}); the rest is baked again", bake.partFile().string(),
                     counted(bake.resumed(), "whole cell"), bake.partProblem()));
@@ -130,12 +143,19 @@ int bakeCells(Session& session, Bake& bake, BakePage& page, CellWarningPrinter& 
     page.curves.resize(index);  // empty for cells of an earlier run
     page.curves.push_back(std::move(trace.curve));
   };
+  events.leaks = [&](uint32_t index, const Leaks& leaks) {
+    report.leaks.resize(index);
+    report.leaks.push_back(leaks);
+  };
   const uint64_t triangles = session.scene().triangleCount() - session.scene().degenerate_triangles;
   events.cell_done = [&](uint32_t index, const CellPvs& pvs) {
     printer.cellDone(index, summarize(pvs));
     if (const auto warning = checkSetSize(pvs.triangles.size(), triangles)) {
       warnings.say(pvs.cell.name, {&*warning, 1});
     }
+    const std::string leaks =
+        index < report.leaks.size() && report.leaks[index] ? leaksText(*report.leaks[index]) : "";
+    if (!leaks.empty()) say(fmt::format("{}: {}", pvs.cell.name, leaks));
   };
   try {
     if (runBake(session, bake, events)) return 0;
@@ -238,11 +258,15 @@ void runBake(const BakeOptions& options) {
                   std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
   const TextOutputs outputs(reports);
-  Session session(loadScene(options.scene, options.load), sessionOptions(options));
+  Scene loaded = loadScene(options.scene, options.load);
+  SessionOptions session_options = sessionOptions(options, loaded);
+  Session session(std::move(loaded), std::move(session_options));
   const Scene& scene = session.scene();
-  Bake bake(bakeInputs(session, loadCells(options.cells), options.params,
-                       options.witnesses ? Witnesses::kKeep : Witnesses::kDrop),
-            options.out, options.overwrite);
+  const BakeContent content(options.witnesses ? Witnesses::kKeep : Witnesses::kDrop,
+                            findObjects(scene, options.doors, "--doors"));
+  Bake bake(bakeInputs(session, loadCells(options.cells), options.params, content), options.out,
+            options.overwrite);
+  sayDoors(bake.head().doors);
   say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangleCount(),
                   counted(scene.objects.size(), "object"), counted(bake.head().planned.size(), "cell")));
   BakeReport report = startReport(options, scene, bake);
@@ -257,7 +281,7 @@ void runBake(const BakeOptions& options) {
   }
   CellWarningPrinter printer;
   warnOfCells(options, session, bake, report, printer);
-  if (!bake.complete()) exit_code = bakeCells(session, bake, page, printer);
+  if (!bake.complete()) exit_code = bakeCells(session, bake, page, report, printer);
   printer.end();
 
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

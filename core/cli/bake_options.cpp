@@ -76,7 +76,7 @@ void declareSampling(CLI::App& command, BakeParams& params) {
         &paramOf("n_rs_area"), &paramOf("reverse_stride"), &paramOf("order"), &paramOf("delta_abs"),
         &paramOf("delta_abs_relative"), &paramOf("delta_rs"), &paramOf("delta_rs_relative"),
         &paramOf("raster_resolution"), &paramOf("threshold"), &paramOf("quiet_iterations"),
-        &paramOf("batch_rays"), &paramOf("seed")}) {
+        &paramOf("batch_rays"), &paramOf("seed"), &paramOf("smallest_hole")}) {
     declareParam(command, params, *param);
   }
 }
@@ -148,6 +148,18 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
   command.add_option("--pictures", options.pictures, "draw each cell from outside and from inside, as PNG")
       ->check(notStandardOutput("a folder of pictures"))
       ->type_name("DIR");
+  command
+      .add_option(
+          "--doors", options.doors,
+          "objects that open, by name (* any letters, ? one; repeated): each cell also gets what it sees "
+          "besides when they are open (docs/doors-and-gaps.md)")
+      ->allow_extra_args(false)
+      ->type_name("PATTERN");
+  command
+      .add_option("--see-through", options.see_through,
+                  "objects that are seen but hide nothing, by name as above: the sets hold wherever they are")
+      ->allow_extra_args(false)
+      ->type_name("PATTERN");
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
   declareLoading(command, options.load);
   command.add_flag("--overwrite", options.overwrite, "replace a bake with other inputs");

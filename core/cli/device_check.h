@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/cli/nearest.h"
+#include "core/base/nearest.h"
 #include "core/device/device.h"
 #include "core/device/registry/make_device.h"
 

@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
+#include "core/cli/doors_option.h"
 #include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
@@ -32,6 +33,7 @@ struct ExportOptions {
   std::filesystem::path pvs, out, scene;
   std::string cell, format;
   SceneLoadOptions load;
+  DoorState doors = DoorState::kClosed;
   uint32_t rays = 1'000'000;  ///< of each cell, and below: for objects
   double least = 0;
   std::string device = "opencl";
@@ -42,9 +44,11 @@ void exportObjects(const ExportOptions& options, const TextOutputs& outputs) {
   if (!options.cell.empty()) {
     throw Error("--cell: --format objects is of all cells; leave it out", kExitUsage);
   }
-  const PvsFile pvs = loadFinishedCells(options.pvs);
-  Session session(loadScene(options.scene, options.load), {.device = options.device});
-  requireScene(pvs, session.scene(), options.pvs);
+  const PvsFile baked = loadFinishedCells(options.pvs);
+  const PvsFile pvs = inState(baked, options.doors, options.pvs);
+  Scene loaded = loadScene(options.scene, options.load);
+  requireScene(pvs, loaded, options.pvs);
+  Session session(inState(std::move(loaded), baked, options.doors), {.device = options.device});
   const StopSignal stop;
   StatusLine status;
   std::vector<ObjectHits> hits;
@@ -87,7 +91,7 @@ void runExport(const ExportOptions& options) {
   requireSeparate(std::array{options.out}, std::array{options.pvs, options.scene});
   const TextOutputs outputs({&options.out, 1});
   if (objects) return exportObjects(options, outputs);
-  const PvsFile pvs = loadFinishedCells(options.pvs);
+  const PvsFile pvs = inState(loadFinishedCells(options.pvs), options.doors, options.pvs);
   const CellPvs& cell = chooseCell(pvs, options.cell, options.pvs);
   std::optional<Scene> scene;
   if (!options.scene.empty()) {
@@ -136,6 +140,7 @@ void addExportCommand(CLI::App& app) {
                    "the baked scene: for obj, glb and objects, and for json's objects")
       ->type_name("SCENE");
   declareLoading(*command, options->load, kAsBakeDid);
+  declareDoors(*command, options->doors);
   const char* const group = "For --format objects";
   command->add_option("--rays", options->rays, "random rays of each cell, which share the view among objects")
       ->transform(wholeNumber(1, kMostObjectRays))

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "core/base/nearest.h"
 #include "core/cli/commands.h"
-#include "core/cli/nearest.h"
 
 namespace sightline {
 namespace {

@@ -142,8 +142,18 @@ void showPvs(const std::filesystem::path& file) {
                                pvs.intersector.empty() ? "" : ", intersection test of " + pvs.intersector));
   showParams(pvs.params);
   row("witnesses", pvs.has_witnesses ? "yes" : "no");
+  for (const NamedTriangles& object : pvs.see_through) {
+    row("hides nothing",
+        fmt::format("{} (from triangle {}, {} of them)", object.name, object.first, object.count));
+  }
+  for (const NamedTriangles& door : pvs.doors) {
+    row("door", fmt::format("{} (from triangle {}, {} of them)", door.name, door.first, door.count));
+  }
   row("result hash", hashText(hashResult(cells)));
   row("cells", fmt::format("{} of {} baked", cells.size(), pvs.planned.size()));
+  for (const CellSummary& cell : cells) {
+    if (cell.open_stats) row("opened", fmt::format("{}: {} more triangles", cell.cell.name, cell.open_added));
+  }
   std::fputs(("\n" + cellTable(cells, pvs.triangle_count)).c_str(), stdout);
 }
 

@@ -17,6 +17,7 @@
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
+#include "core/cli/doors_option.h"
 #include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
@@ -44,6 +45,7 @@ struct MeasureCommand {
   double max_average = std::numeric_limits<double>::infinity();
   double max_wrong = std::numeric_limits<double>::infinity();
   SceneLoadOptions load;
+  DoorState doors = DoorState::kClosed;
 };
 
 /// How the cells that two files hold differ; empty: not at all.
@@ -65,6 +67,12 @@ std::vector<PvsFile> loadSets(const MeasureCommand& command, const Scene& scene)
   for (const std::filesystem::path& file : command.pvs) {
     sets.push_back(loadFinishedCells(file));
     requireScene(sets.back(), scene, file);
+    const bool other_doors = sets.back().doors != sets.front().doors && command.doors == DoorState::kOpen;
+    if (other_doors || sets.back().see_through != sets.front().see_through) {
+      throw Error(fmt::format(
+          "{}: was baked with other objects than {} that open or hide nothing; measure the files one by one",
+          file.string(), command.pvs.front().string()));
+    }
     if (sets.back().cells.empty()) {
       throw Error(fmt::format("{}: holds no finished cell; go on with its bake", file.string()));
     }
@@ -188,9 +196,11 @@ void run(const MeasureCommand& command) {
   requireSeparate(reports, inputs);
   const TextOutputs outputs(reports);
   if (!command.pictures.empty()) makeFolder(command.pictures);
-  Session session(loadScene(command.scene, command.load), {.device = command.device});
+  Scene loaded = loadScene(command.scene, command.load);
+  std::vector<PvsFile> files = loadSets(command, loaded);
+  Session session(inState(std::move(loaded), files.front(), command.doors), {.device = command.device});
   const Scene& scene = session.scene();
-  const std::vector<PvsFile> files = loadSets(command, scene);
+  for (size_t i = 0; i < files.size(); ++i) files[i] = inState(files[i], command.doors, command.pvs[i]);
   const std::vector<uint32_t> cells = cellsToMeasure(command, files.front());
   Tracer& tracer = session.parts().tracer();
 
@@ -250,6 +260,7 @@ void declareFiles(CLI::App& command, MeasureCommand& options) {
                   "write a page with tables, a chart and the pictures, if there are any")
       ->type_name("R.html");
   declareLoading(command, options.load, kAsBakeDid);
+  declareDoors(command, options.doors);
 }
 
 void declareMeasure(CLI::App& command, MeasureCommand& options) {

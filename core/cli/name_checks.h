@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/cli/nearest.h"
+#include "core/base/nearest.h"
 
 namespace sightline {
 

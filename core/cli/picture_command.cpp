@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
+#include "core/cli/doors_option.h"
 #include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
@@ -32,6 +33,7 @@ struct PictureCommand {
   std::string cell, view = "outside", device = "opencl", cut = "auto";
   PictureOptions options;
   SceneLoadOptions load;
+  DoorState doors = DoorState::kClosed;
 };
 
 std::string missingList(const Picture& picture) {
@@ -47,11 +49,13 @@ void draw(const PictureCommand& command) {
     throw Error(fmt::format("{}: must end with .png", command.output.string()), kExitUsage);
   }
   requireSeparate(std::array{command.output}, std::array{command.scene, command.pvs});
-  const PvsFile pvs = loadFinishedCells(command.pvs);
+  const PvsFile baked = loadFinishedCells(command.pvs);
+  const PvsFile pvs = inState(baked, command.doors, command.pvs);
   const CellPvs& cell = chooseCell(pvs, command.cell, command.pvs);
-  Session session(loadScene(command.scene, command.load), {.device = command.device});
+  Scene loaded = loadScene(command.scene, command.load);
+  requireScene(pvs, loaded, command.pvs);
+  Session session(inState(std::move(loaded), baked, command.doors), {.device = command.device});
   const Scene& scene = session.scene();
-  requireScene(pvs, scene, command.pvs);
   session.open();
   const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
     session.traceRays(rays, hits);
@@ -126,6 +130,7 @@ void addPictureCommand(CLI::App& app) {
       ->type_name("NAME")
       ->capture_default_str();
   declareLoading(*command, options->load, kAsBakeDid);
+  declareDoors(*command, options->doors);
   command->callback([options] {
     setCut(options->options, options->cut);
     draw(*options);

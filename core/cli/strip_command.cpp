@@ -92,6 +92,8 @@ std::vector<bool> seenOf(const PvsFile& pvs) {
   std::vector<bool> seen(pvs.triangle_count, false);
   for (const CellPvs& cell : pvs.cells) {
     for (const uint32_t id : cell.triangles) seen[id] = true;
+    if (!cell.open) continue;  // what open doors show stays, too
+    for (const uint32_t id : cell.open->triangles) seen[id] = true;
   }
   return seen;
 }
@@ -244,6 +246,12 @@ void addStripCommand(CLI::App& app) {
   command->add_flag("--keep-objects", a->strip.keep_objects, "keep a triangle of an object that nobody sees");
   command->add_flag("--compact", a->strip.compact, "drop the vertices that no triangle uses any more");
   command->add_flag("--overwrite", a->strip.overwrite, "replace the output if it is there");
+  command
+      ->add_option("--rays", a->rays,
+                   "random rays of each cell besides the bake's; what they meet stays, too")
+      ->transform(wholeNumber(0, 1u << 30))
+      ->type_name("N")
+      ->capture_default_str();
   command
       ->add_option(
           "--check-rays", a->check_rays,

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/base/nearest.h"
 #include "core/cli/command_line.h"
-#include "core/cli/nearest.h"
 
 namespace sightline {
 namespace {

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -8,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"
+#include "core/cli/doors_option.h"
 #include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
@@ -29,6 +31,7 @@ struct VerifyCommand {
   double min_proven = 0.9999;
   SceneLoadOptions load;
   bool overwrite = false;
+  DoorState doors = DoorState::kClosed;
 };
 
 std::string reportText(const VerifyCommand& command, const PvsFile& pvs,
@@ -44,13 +47,16 @@ std::string reportText(const VerifyCommand& command, const PvsFile& pvs,
 }
 
 /// Writes the sets with better witnesses and without what is disproved.
-void writeBetter(const VerifyCommand& command, PvsFile& pvs, const std::vector<CellProofs>& cells) {
+void writeBetter(const VerifyCommand& command, PvsFile& pvs, PvsFile baked,
+                 const std::vector<CellProofs>& cells) {
   uint64_t removed = 0;
   for (size_t i = 0; i < cells.size(); ++i) {
     removed += cells[i].counts[size_t(Proof::kDisproved)];
     removeDisproved(cells[i], pvs.cells[i]);
+    baked.cells[i].triangles = std::move(pvs.cells[i].triangles);
+    baked.cells[i].witnesses = std::move(pvs.cells[i].witnesses);
   }
-  savePvs(pvs, command.output);
+  savePvs(baked, command.output);
   if (removed == 0) return;
   fmt::print("{}: {} {} left out\n", command.output.string(), counted(removed, "disproved triangle"),
              removed == 1 ? "is" : "are");
@@ -75,25 +81,30 @@ bool pastLimits(const VerifyCommand& command, const std::vector<CellProofs>& cel
 }
 
 void run(const VerifyCommand& command) {
+  if (command.doors == DoorState::kOpen && !command.output.empty()) {
+    throw Error("--output: better sets can be written with the doors closed only", kExitUsage);
+  }
   requireSeparate(std::array{command.output, command.report}, std::array{command.scene, command.pvs});
   if (!command.output.empty()) {
     requireNew(command.output, command.overwrite);
     OutputFile probe(command.output);  // fail before the work, not after it
   }
   const TextOutputs outputs({&command.report, 1});
-  PvsFile pvs = loadFinishedCells(command.pvs);
+  const PvsFile baked = loadFinishedCells(command.pvs);
+  PvsFile pvs = inState(baked, command.doors, command.pvs);
   if (!pvs.has_witnesses) {
     throw Error(fmt::format("{}: has no witnesses; bake it with --witnesses", command.pvs.string()));
   }
-  const Scene scene = loadScene(command.scene, command.load);
-  requireScene(pvs, scene, command.pvs);
+  Scene loaded = loadScene(command.scene, command.load);
+  requireScene(pvs, loaded, command.pvs);
+  const Scene scene = inState(std::move(loaded), baked, command.doors);
   const Bvh bvh = buildSceneTree(scene);
   const Judge judge(scene, bvh);
   std::vector<CellProofs> cells;
   for (CellPvs& cell : pvs.cells) cells.push_back(verifyCell(judge, scene, cell, command.options));
   std::fputs(verifyTable(cells).c_str(), stdout);
   if (!command.report.empty()) outputs.save(reportText(command, pvs, cells), command.report);
-  if (!command.output.empty()) writeBetter(command, pvs, cells);
+  if (!command.output.empty()) writeBetter(command, pvs, baked, cells);
   if (pastLimits(command, cells)) throw ExitCode{kExitPastLimit};
 }
 
@@ -124,6 +135,7 @@ void addVerifyCommand(CLI::App& app) {
       ->check(between(0, 1))
       ->type_name("SHARE")
       ->capture_default_str();
+  declareDoors(*command, options->doors);
   declareRounding(*command, options->options.rounding);
   command->add_flag("--overwrite", options->overwrite, "replace NEW.pvs");
   declareLoading(*command, options->load, kAsBakeDid);

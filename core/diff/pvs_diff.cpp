@@ -61,6 +61,14 @@ void comparePlans(std::vector<ValueDifference>& list, const PvsFile& a, const Pv
   }
 }
 
+std::string objectsText(const std::vector<NamedTriangles>& objects) {
+  std::string text;
+  for (const NamedTriangles& object : objects) {
+    text += fmt::format("{}{} ({} + {})", text.empty() ? "" : ", ", object.name, object.first, object.count);
+  }
+  return text.empty() ? kNone : text;
+}
+
 std::vector<ValueDifference> compareInputs(const PvsFile& a, const PvsFile& b) {
   std::vector<ValueDifference> list;
   compare(list, "revision of the algorithm", a.algorithm, b.algorithm);
@@ -73,6 +81,8 @@ std::vector<ValueDifference> compareInputs(const PvsFile& a, const PvsFile& b) {
   }
   compare(list, "witnesses", std::string(a.has_witnesses ? "yes" : "no"), b.has_witnesses ? "yes" : "no");
   comparePlans(list, a, b);
+  compare(list, "doors", objectsText(a.doors), objectsText(b.doors));
+  compare(list, "objects that hide nothing", objectsText(a.see_through), objectsText(b.see_through));
   return list;
 }
 
@@ -128,6 +138,11 @@ std::vector<ValueDifference> compareStatistics(const CellStats& a, const CellSta
   return list;
 }
 
+const std::vector<uint32_t>& openedBy(const CellPvs& cell) {
+  static const std::vector<uint32_t> nothing;
+  return cell.open ? cell.open->triangles : nothing;
+}
+
 void compareCells(PvsDiff& diff, const PvsFile& a, const PvsFile& b) {
   std::map<std::string, const CellPvs*> in_b;
   for (const CellPvs& cell : b.cells) in_b[cell.cell.name] = &cell;
@@ -141,6 +156,7 @@ void compareCells(PvsDiff& diff, const PvsFile& a, const PvsFile& b) {
     in_b.erase(found);
     CellDiff difference{cell.cell.name,
                         {onlyIn(cell.triangles, other.triangles), onlyIn(other.triangles, cell.triangles)},
+                        {onlyIn(openedBy(cell), openedBy(other)), onlyIn(openedBy(other), openedBy(cell))},
                         otherWitnesses(cell, other, diff.compared_triangles),
                         compareStatistics(cell.stats, other.stats)};
     ++diff.compared_cells;

@@ -25,10 +25,14 @@ inline constexpr size_t kListedIds = 5;
 struct CellDiff {
   std::string name;
   std::array<SomeIds, 2> only;              ///< triangles of A's set alone, of B's alone
+  std::array<SomeIds, 2> only_open;         ///< the same of what the open doors add
   SomeIds witnesses;                        ///< triangles of both whose rays differ in a bit
   std::vector<ValueDifference> statistics;  ///< counts; those that cost only (seconds, bytes) are left out
 
-  bool same() const { return only[0].count + only[1].count + witnesses.count == 0 && statistics.empty(); }
+  bool same() const {
+    return only[0].count + only[1].count + only_open[0].count + only_open[1].count + witnesses.count == 0 &&
+           statistics.empty();
+  }
 };
 
 /// Where two bakes differ. What may differ between two runs of the same bake is not compared: times, memory,

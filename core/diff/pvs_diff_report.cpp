@@ -40,6 +40,8 @@ std::vector<std::string> diffLines(const PvsDiff& diff) {
     };
     if (cell.only[0].count > 0) say(idsText(cell.only[0]) + " in A only");
     if (cell.only[1].count > 0) say(idsText(cell.only[1]) + " in B only");
+    if (cell.only_open[0].count > 0) say(idsText(cell.only_open[0]) + " with open doors in A only");
+    if (cell.only_open[1].count > 0) say(idsText(cell.only_open[1]) + " with open doors in B only");
     if (cell.witnesses.count > 0) say("other witnesses of " + idsText(cell.witnesses));
     for (const ValueDifference& difference : cell.statistics) say(valueLine(difference));
   }
@@ -61,6 +63,8 @@ Json diffJson(const PvsDiff& diff) {
     cells.push_back({{"name", cell.name},
                      {"only_a", toJson(cell.only[0])},
                      {"only_b", toJson(cell.only[1])},
+                     {"only_open_a", toJson(cell.only_open[0])},
+                     {"only_open_b", toJson(cell.only_open[1])},
                      {"witnesses", toJson(cell.witnesses)},
                      {"statistics", toJson(cell.statistics)}});
   }

@@ -34,6 +34,8 @@ struct BakeParams {
   uint32_t raster_resolution = 1000;  ///< method raster only: pixels along an edge of a hemicube's front side
   double target_error = 0;  ///< stop a cell at this share of wrong pixels (95 % upper bound), in place of the
                             ///< threshold; 0: off, else kSmallestTargetError up to 1
+  float smallest_hole = 0;  ///< world units: a ray counts only where it has more room than this
+                            ///< (narrow_gap.h) on its way; 0: exact
   bool operator==(const BakeParams&) const = default;
 };
 

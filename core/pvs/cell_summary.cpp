@@ -16,9 +16,16 @@ double CellSummary::missingShare() const {
 }
 
 CellSummary summarize(const CellPvs& pvs) {
-  const auto& ids = pvs.triangles;
-  return {pvs.cell, pvs.stats, uint32_t(ids.size()), XXH3_64bits(ids.data(), ids.size() * sizeof(uint32_t)),
-          pvs.device};
+  const auto hashOf = [](const std::vector<uint32_t>& ids) {
+    return XXH3_64bits(ids.data(), ids.size() * sizeof(uint32_t));
+  };
+  CellSummary summary{pvs.cell, pvs.stats, uint32_t(pvs.triangles.size()), hashOf(pvs.triangles), pvs.device};
+  if (pvs.open) {
+    summary.open_stats = pvs.open->stats;
+    summary.open_added = uint32_t(pvs.open->triangles.size());
+    summary.open_hash = hashOf(pvs.open->triangles);
+  }
+  return summary;
 }
 
 std::vector<CellSummary> summarize(const PvsFile& pvs) {
@@ -32,6 +39,9 @@ uint64_t hashResult(std::span<const CellSummary> cells) {
   for (const CellSummary& cell : cells) {
     out.number(uint64_t(cell.pvs_size));
     out.number(cell.set_hash);
+    if (!cell.open_stats) continue;
+    out.number(uint64_t(cell.open_added));
+    out.number(cell.open_hash);
   }
   return XXH3_64bits(out.bytes().data(), out.bytes().size());
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,9 +14,12 @@ namespace sightline {
 struct CellSummary {
   ViewCell cell;
   CellStats stats;
-  uint32_t pvs_size = 0;  ///< triangles in the set
-  uint64_t set_hash = 0;  ///< XXH3 of the ids
-  std::string device;     ///< that baked it
+  uint32_t pvs_size = 0;                     ///< triangles in the set
+  uint64_t set_hash = 0;                     ///< XXH3 of the ids
+  std::string device;                        ///< that baked it
+  std::optional<CellStats> open_stats = {};  ///< of a bake with doors
+  uint32_t open_added = 0;                   ///< triangles that their opening adds
+  uint64_t open_hash = 0;                    ///< XXH3 of their ids
 
   /// Traced by the three stages, validation left out.
   uint64_t rays() const { return stats.random.rays + stats.border.rays + stats.reverse.rays; }

@@ -58,8 +58,8 @@ std::string rangeOf(const ParamField<Value>& field) {
 }  // namespace
 
 std::string paramGroupName(ParamGroup group) {
-  constexpr const char* kNames[] = {"method",    "seed",      "samples", "thinning",
-                                    "distances", "stop rule", "batch",   "validation"};
+  constexpr const char* kNames[] = {"method",    "seed",  "samples",    "thinning", "distances",
+                                    "stop rule", "batch", "validation", "holes"};
   static_assert(std::size(kNames) == std::size(kParamGroups));
   return kNames[size_t(group)];
 }

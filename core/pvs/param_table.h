@@ -23,10 +23,21 @@ using AnyParamField = std::variant<ParamField<uint32_t>, ParamField<uint64_t>, P
                                    ParamField<double>, ParamField<Method>, ParamField<Order>>;
 
 /// Parameters that pages and `info` show together, in this order.
-enum class ParamGroup { kMethod, kSeed, kSamples, kThinning, kDistances, kStopRule, kBatch, kValidation };
+enum class ParamGroup {
+  kMethod,
+  kSeed,
+  kSamples,
+  kThinning,
+  kDistances,
+  kStopRule,
+  kBatch,
+  kValidation,
+  kHoles
+};
 inline constexpr ParamGroup kParamGroups[] = {
-    ParamGroup::kMethod,    ParamGroup::kSeed,     ParamGroup::kSamples, ParamGroup::kThinning,
-    ParamGroup::kDistances, ParamGroup::kStopRule, ParamGroup::kBatch,   ParamGroup::kValidation};
+    ParamGroup::kMethod,   ParamGroup::kSeed,       ParamGroup::kSamples,
+    ParamGroup::kThinning, ParamGroup::kDistances,  ParamGroup::kStopRule,
+    ParamGroup::kBatch,    ParamGroup::kValidation, ParamGroup::kHoles};
 /// "method", "seed", "samples", ...
 std::string paramGroupName(ParamGroup group);
 
@@ -35,6 +46,7 @@ inline constexpr uint32_t methodBit(Method method) {
   return 1u << uint32_t(method);
 }
 inline constexpr uint32_t kEveryMethod = ~0u;
+inline constexpr uint32_t kMethodsByRays = kEveryMethod & ~methodBit(Method::kRaster);
 inline constexpr uint32_t kMethodsThatExplore =
     methodBit(Method::kGvspp) | methodBit(Method::kGvs) | methodBit(Method::kNaive);
 /// gvs has fixed samples.
@@ -129,6 +141,10 @@ inline constexpr Param kParams[] = {
      kMethodsThatSample, ParamGroup::kThinning, "order",
      "yield: the kind of ray that finds most goes first; queue: reverse rays of a batch follow its "
      "border rays, as in the thesis"},
+    {ParamField<float>{&BakeParams::smallest_hole, 0, param_table::kMostFloat}, "smallest_hole",
+     "world units", "none", 5, kMethodsByRays, ParamGroup::kHoles, "smallest hole",
+     "gaps narrower than this count as closed, those wider than twice as much as open (0: every gap is "
+     "open; docs/doors-and-gaps.md)"},
 };
 
 /// Calls f(const Param&, value) for each, in the order of kParams. Params: BakeParams, perhaps const.

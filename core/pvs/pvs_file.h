@@ -5,13 +5,14 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/named_triangles.h"
 #include "core/pvs/bake_params.h"
 #include "core/pvs/cell_pvs.h"
 
 namespace sightline {
 
-/// Version of the format that this program writes.
-inline constexpr uint32_t kPvsVersion = 4;
+/// Latest version of the format. A bake that needs nothing of it is written in version 4 (versionOf).
+inline constexpr uint32_t kPvsVersion = 5;
 
 /// All of a .pvs file (docs/pvs-format.md).
 struct PvsFile {
@@ -27,6 +28,11 @@ struct PvsFile {
   BakeParams params;
   glm::dvec3 offset{0.0};      ///< Scene::offset: cells and witnesses are less this, the scene's file is not
   bool has_witnesses = false;  ///< every cell has one witness a triangle
+  /// Objects that open: closed in the cells' sets, hiding nothing in what their open sets add. Ascending,
+  /// disjoint.
+  std::vector<NamedTriangles> doors;
+  /// Objects that are seen but hide nothing. Likewise.
+  std::vector<NamedTriangles> see_through;
   std::vector<ViewCell> planned;  ///< all cells of the bake, in order; cells holds the first of them
   std::vector<CellPvs> cells;     ///< baked so far; complete when as many as planned
 };
@@ -42,8 +48,11 @@ class BadPvs : public Error {
 /// BadPvs (file, offset, what was expected), or Error if the file cannot be read.
 PvsFile loadPvs(const std::filesystem::path& file);
 
+/// The version in which a bake is written: the oldest that can hold it.
+uint32_t versionOf(const PvsFile& pvs);
+
 /// Writes to a temporary name beside it, flushes to disk and renames; each pvs.cells with its device. In
-/// pvs.version's stead it writes kPvsVersion. Throws Error.
+/// pvs.version's stead it writes versionOf(pvs). Throws Error.
 void savePvs(const PvsFile& pvs, const std::filesystem::path& file);
 
 }  // namespace sightline

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "core/cell/cell_problem.h"
 #include "core/pvs/param_table.h"
@@ -17,8 +18,9 @@ namespace {
 constexpr size_t kPlannedCellBytes = 4 + 9 * 8;
 /// Bytes of a witness before compression: origin, direction, stage.
 constexpr uint64_t kWitnessBytes = 25;
-constexpr uint32_t kFlagWitnesses = 1;
-constexpr uint32_t kFlagOffset = 2;
+constexpr uint32_t kFlagWitnesses = 1, kFlagDoors = 2, kFlagSeeThrough = 4, kFlagOffset = 8;
+/// Bytes of named triangles without the name's characters.
+constexpr size_t kNamedTrianglesBytes = 4 + 2 * 4;
 /// Of programs that wrote no revision.
 constexpr uint32_t kFirstAlgorithm = 1;
 
@@ -26,8 +28,9 @@ void require(bool condition, const char* problem) {
   if (!condition) throw Damage(problem);
 }
 
-void writeParams(ByteWriter& out, const BakeParams& params) {
-  visitParams(params, [&](const Param&, const auto& value) {
+void writeParams(ByteWriter& out, const BakeParams& params, uint32_t version) {
+  visitParams(params, [&](const Param& param, const auto& value) {
+    if (param.since > version) return;
     if constexpr (std::is_enum_v<std::remove_cvref_t<decltype(value)>>) {
       out.number(uint32_t(value));
     } else {
@@ -110,6 +113,32 @@ CellStats readStats(ByteReader& in, bool with_cost) {
   return stats;
 }
 
+void writeObjects(ByteWriter& out, const std::vector<NamedTriangles>& objects) {
+  if (objects.empty()) return;
+  out.number(uint32_t(objects.size()));
+  for (const NamedTriangles& object : objects) {
+    out.text(object.name);
+    out.number(object.first);
+    out.number(object.count);
+  }
+}
+
+std::vector<NamedTriangles> readObjects(ByteReader& in, uint32_t triangle_count) {
+  const auto count = in.number<uint32_t>();
+  require(count != 0 && count <= in.left() / kNamedTrianglesBytes, "more objects announced than there are");
+  std::vector<NamedTriangles> objects(count);
+  uint64_t end = 0;
+  for (NamedTriangles& object : objects) {
+    object.name = in.text();
+    object.first = in.number<uint32_t>();
+    object.count = in.number<uint32_t>();
+    require(object.count != 0 && object.first >= end, "objects that do not ascend");
+    end = uint64_t(object.first) + object.count;
+    require(end <= triangle_count, "an object beyond the scene");
+  }
+  return objects;
+}
+
 ViewCell readPlannedCell(ByteReader& in) {
   ViewCell cell;
   cell.name = in.text();
@@ -148,12 +177,37 @@ std::vector<Witness> unpackWitnesses(std::span<const uint8_t> frame, size_t coun
   return witnesses;
 }
 
+/// Number of ids, statistics where they are not those of the cell, set.
+void writeSet(ByteWriter& out, const std::vector<uint32_t>& triangles, const CellStats& stats) {
+  out.number(uint32_t(triangles.size()));
+  writeStats(out, stats);
+  const Bytes set = encodeSet(triangles);
+  out.number(uint64_t(set.size()));
+  out.raw(set);
+}
+
+std::vector<uint32_t> readSet(ByteReader& in, CellStats& stats, const PvsFile& head) {
+  const auto count = in.number<uint32_t>();
+  stats = readStats(in, head.version < kPvsVersionWithCosts);
+  const auto set = in.raw(in.number<uint64_t>());
+  require(!in.failed(), "cell of the wrong size");
+  auto triangles = decodeSet(set, count, head.triangle_count);
+  require(triangles.has_value(), "set of triangles damaged");
+  return std::move(*triangles);
+}
+
 }  // namespace
 
-Bytes writePrelude() {
+uint32_t versionOf(const PvsFile& pvs) {
+  const bool plain = pvs.doors.empty() && pvs.see_through.empty() && pvs.params.smallest_hole == 0 &&
+                     pvs.offset == glm::dvec3(0.0);
+  return plain ? kPvsVersionWithCosts : kPvsVersionWithDoors;
+}
+
+Bytes writePrelude(uint32_t version) {
   ByteWriter out;
   out.raw(kPvsMagic);
-  out.number(kPvsVersion);
+  out.number(version);
   out.number(uint32_t(0));
   return out.bytes();
 }
@@ -173,11 +227,14 @@ Bytes writeHeadPayload(const PvsFile& pvs) {
   out.number(pvs.scene_hash);
   out.number(pvs.triangle_count);
   const bool has_offset = pvs.offset != glm::dvec3(0.0);
-  out.number((pvs.has_witnesses ? kFlagWitnesses : 0u) | (has_offset ? kFlagOffset : 0u));
+  out.number((pvs.has_witnesses ? kFlagWitnesses : 0u) | (pvs.doors.empty() ? 0u : kFlagDoors) |
+             (pvs.see_through.empty() ? 0u : kFlagSeeThrough) | (has_offset ? kFlagOffset : 0u));
   out.number(pvs.algorithm);
-  writeParams(out, pvs.params);
+  writeParams(out, pvs.params, versionOf(pvs));
   out.text(pvs.scene_name);
   out.text(pvs.intersector);
+  writeObjects(out, pvs.doors);
+  writeObjects(out, pvs.see_through);
   for (int axis = 0; has_offset && axis < 3; ++axis) out.number(pvs.offset[axis]);
   out.number(uint32_t(pvs.planned.size()));
   for (const ViewCell& cell : pvs.planned) {
@@ -196,7 +253,10 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version) {
   pvs.scene_hash = in.number<uint64_t>();
   pvs.triangle_count = in.number<uint32_t>();
   const auto flags = in.number<uint32_t>();
-  require(flags <= (kFlagWitnesses | kFlagOffset), "unknown flags");
+  const uint32_t known = version < kPvsVersionWithDoors
+                             ? kFlagWitnesses
+                             : kFlagWitnesses | kFlagDoors | kFlagSeeThrough | kFlagOffset;
+  require((flags & ~known) == 0, "unknown flags");
   pvs.has_witnesses = (flags & kFlagWitnesses) != 0;
   pvs.algorithm = version < kPvsVersionWithCosts ? kFirstAlgorithm : in.number<uint32_t>();
   pvs.params = readParams(in, version);
@@ -207,6 +267,8 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version) {
   } else {
     pvs.intersector = in.text();
   }
+  if ((flags & kFlagDoors) != 0) pvs.doors = readObjects(in, pvs.triangle_count);
+  if ((flags & kFlagSeeThrough) != 0) pvs.see_through = readObjects(in, pvs.triangle_count);
   if ((flags & kFlagOffset) != 0) pvs.offset = readOffset(in);
   const auto planned = in.number<uint32_t>();
   require(planned <= in.left() / kPlannedCellBytes, "more cells announced than there are");
@@ -217,19 +279,27 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version) {
   return pvs;
 }
 
-Bytes writeCellPayload(const CellPvs& cell, uint32_t index, bool has_witnesses) {
-  if (cell.witnesses.size() != (has_witnesses ? cell.triangles.size() : 0)) {
+Bytes writeCellPayload(const CellPvs& cell, uint32_t index, const PvsFile& head) {
+  const auto requireWitnesses = [&](const auto& set) {
+    if (set.witnesses.size() == (head.has_witnesses ? set.triangles.size() : 0)) return;
     throw Error(fmt::format("cell {} has {} witnesses for {} triangles: an error of this program",
-                            cell.cell.name, cell.witnesses.size(), cell.triangles.size()));
+                            cell.cell.name, set.witnesses.size(), set.triangles.size()));
+  };
+  requireWitnesses(cell);
+  if (cell.open.has_value() == head.doors.empty()) {
+    throw Error(fmt::format("cell {}: an open set without doors, or none with them: an error of this program",
+                            cell.cell.name));
   }
   ByteWriter out;
   out.number(index);
-  out.number(uint32_t(cell.triangles.size()));
-  writeStats(out, cell.stats);
-  const Bytes set = encodeSet(cell.triangles);
-  out.number(uint64_t(set.size()));
-  out.raw(set);
-  if (!cell.witnesses.empty()) out.raw(packWitnesses(cell.witnesses));
+  writeSet(out, cell.triangles, cell.stats);
+  std::vector<Witness> witnesses = cell.witnesses;
+  if (cell.open) {
+    requireWitnesses(*cell.open);
+    writeSet(out, cell.open->triangles, cell.open->stats);
+    witnesses.insert(witnesses.end(), cell.open->witnesses.begin(), cell.open->witnesses.end());
+  }
+  if (!witnesses.empty()) out.raw(packWitnesses(witnesses));
   return out.bytes();
 }
 
@@ -240,25 +310,39 @@ IndexedCell readCellPayload(std::span<const uint8_t> payload, const PvsFile& hea
   require(result.index < head.planned.size(), "a cell that was not planned");
   CellPvs& cell = result.pvs;
   cell.cell = head.planned[result.index];
-  const auto count = in.number<uint32_t>();
-  cell.stats = readStats(in, head.version < kPvsVersionWithCosts);
-  const auto set = in.raw(in.number<uint64_t>());
-  require(!in.failed(), "cell of the wrong size");
-  auto triangles = decodeSet(set, count, head.triangle_count);
-  require(triangles.has_value(), "set of triangles damaged");
-  cell.triangles = std::move(*triangles);
+  cell.triangles = readSet(in, cell.stats, head);
+  size_t count = cell.triangles.size();
+  if (!head.doors.empty()) {
+    cell.open.emplace();
+    cell.open->triangles = readSet(in, cell.open->stats, head);
+    std::vector<uint32_t> both;
+    std::ranges::set_intersection(cell.triangles, cell.open->triangles, std::back_inserter(both));
+    require(both.empty(), "the open set adds what the closed one has");
+    count += cell.open->triangles.size();
+  }
   const auto witnesses = in.raw(in.left());
   if (head.has_witnesses && count != 0) cell.witnesses = unpackWitnesses(witnesses, count);
   require(cell.witnesses.size() == (head.has_witnesses ? count : 0) &&
               (witnesses.empty() || !cell.witnesses.empty()),
           "witnesses where none belong");
+  if (cell.open && head.has_witnesses) {
+    const auto opened = cell.witnesses.begin() + ptrdiff_t(cell.triangles.size());
+    cell.open->witnesses.assign(opened, cell.witnesses.end());
+    cell.witnesses.erase(opened, cell.witnesses.end());
+  }
   return result;
 }
 
 CellCost costOf(const CellPvs& cell, uint32_t index) {
   const CellStats& stats = cell.stats;
-  return {index,         stats.random.seconds,    stats.border.seconds, stats.reverse.seconds,
-          stats.seconds, stats.peak_device_bytes, cell.device};
+  return {index,
+          stats.random.seconds,
+          stats.border.seconds,
+          stats.reverse.seconds,
+          stats.seconds,
+          cell.open ? cell.open->stats.seconds : 0,
+          stats.peak_device_bytes,
+          cell.device};
 }
 
 void setCost(CellPvs& cell, const CellCost& cost) {
@@ -266,15 +350,17 @@ void setCost(CellPvs& cell, const CellCost& cost) {
   cell.stats.border.seconds = cost.border_seconds;
   cell.stats.reverse.seconds = cost.reverse_seconds;
   cell.stats.seconds = cost.seconds;
+  if (cell.open) cell.open->stats.seconds = cost.open_seconds;
   cell.stats.peak_device_bytes = cost.peak_device_bytes;
   cell.device = cost.device;
 }
 
-void writeCost(ByteWriter& out, const CellCost& cost) {
+void writeCost(ByteWriter& out, const CellCost& cost, const PvsFile& head) {
   out.number(cost.index);
   for (double value : {cost.random_seconds, cost.border_seconds, cost.reverse_seconds, cost.seconds}) {
     out.number(value);
   }
+  if (!head.doors.empty()) out.number(cost.open_seconds);
   out.number(cost.peak_device_bytes);
   out.text(cost.device);
 }
@@ -289,6 +375,7 @@ std::vector<CellCost> readCostPayload(std::span<const uint8_t> payload, const Pv
     for (double* value : {&cost.random_seconds, &cost.border_seconds, &cost.reverse_seconds, &cost.seconds}) {
       *value = readSeconds(in);
     }
+    if (!head.doors.empty()) cost.open_seconds = readSeconds(in);
     cost.peak_device_bytes = in.number<uint64_t>();
     cost.device = in.text();
     require(!in.failed(), "times of cells cut off");

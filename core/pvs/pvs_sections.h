@@ -17,6 +17,9 @@ inline constexpr uint32_t kOldestPvsVersion = 3;
 /// The first version with an algorithm's revision, an intersector and COST sections.
 inline constexpr uint32_t kPvsVersionWithCosts = 4;
 
+/// The first version with a smallest hole, doors and objects that hide nothing.
+inline constexpr uint32_t kPvsVersionWithDoors = 5;
+
 /// Bytes before the first section.
 inline constexpr size_t kPvsPreludeBytes = 16;
 /// Bytes of a section before its payload, and after it.
@@ -46,6 +49,7 @@ struct CellCost {
   uint32_t index = 0;  ///< among the planned ones
   double random_seconds = 0, border_seconds = 0, reverse_seconds = 0;
   double seconds = 0;
+  double open_seconds = 0;  ///< of the open set; in files with doors only
   uint64_t peak_device_bytes = 0;
   std::string device;
 };
@@ -54,16 +58,16 @@ CellCost costOf(const CellPvs& cell, uint32_t index);
 void setCost(CellPvs& cell, const CellCost& cost);
 
 /// Magic, version, 0.
-Bytes writePrelude();
+Bytes writePrelude(uint32_t version);
 /// Kind, size, payload and checksum.
 Bytes writeSection(uint32_t kind, std::span<const uint8_t> payload);
 
 Bytes writeHeadPayload(const PvsFile& pvs);
 /// The cell without its cost. Throws Error, an error of this program, if its witnesses are not one a triangle
-/// or none, as `has_witnesses` says.
-Bytes writeCellPayload(const CellPvs& cell, uint32_t index, bool has_witnesses);
+/// or none, or its open set is not there or there, as `head` says.
+Bytes writeCellPayload(const CellPvs& cell, uint32_t index, const PvsFile& head);
 /// Part of a COST section's payload, which is one or more of these.
-void writeCost(ByteWriter& out, const CellCost& cost);
+void writeCost(ByteWriter& out, const CellCost& cost, const PvsFile& head);
 /// checksum: XXH3 of all bytes of the file before the section.
 Bytes writeEndPayload(uint32_t cells, uint64_t checksum);
 

@@ -60,10 +60,10 @@ PvsWriter::~PvsWriter() {
 
 void PvsWriter::begin(const PvsFile& head) {
   if (::ftruncate(descriptor_, 0) != 0 || ::lseek(descriptor_, 0, SEEK_SET) != 0) failOn(part_, "empty");
-  has_witnesses_ = head.has_witnesses;
+  setHead(head);
   size_ = 0;
   costs_ = {};
-  write(writePrelude());
+  write(writePrelude(versionOf(head)));
   write(writeSection(kSectionHead, writeHeadPayload(head)));
   places_ = {{0, size_}};
 }
@@ -73,10 +73,17 @@ void PvsWriter::goOn(const PartialPvs& left) {
   if (::ftruncate(descriptor_, off_t(size_)) != 0 || ::lseek(descriptor_, 0, SEEK_END) < 0) {
     failOn(part_, "cut");
   }
-  has_witnesses_ = left.pvs.has_witnesses;
+  setHead(left.pvs);
   places_ = left.places;
   costs_ = {};
-  for (uint32_t index = 0; index < cells(); ++index) writeCost(costs_, costOf(left.pvs.cells[index], index));
+  for (uint32_t index = 0; index < cells(); ++index)
+    writeCost(costs_, costOf(left.pvs.cells[index], index), head_);
+}
+
+void PvsWriter::setHead(const PvsFile& head) {
+  head_ = {};
+  head_.has_witnesses = head.has_witnesses;
+  head_.doors = head.doors;
 }
 
 void PvsWriter::write(const Bytes& bytes) {
@@ -88,13 +95,13 @@ void PvsWriter::write(const Bytes& bytes) {
 void PvsWriter::append(const CellPvs& cell) {
   const CellCost cost = costOf(cell, cells());
   ByteWriter own_cost, both;
-  writeCost(own_cost, cost);
-  both.raw(writeSection(kSectionCell, writeCellPayload(cell, cells(), has_witnesses_)));
+  writeCost(own_cost, cost, head_);
+  both.raw(writeSection(kSectionCell, writeCellPayload(cell, cells(), head_)));
   const ByteRange place{size_, both.bytes().size()};
   both.raw(writeSection(kSectionCost, own_cost.bytes()));
   write(both.bytes());
   places_.push_back(place);
-  writeCost(costs_, cost);
+  writeCost(costs_, cost, head_);
 }
 
 void PvsWriter::writeFinished(int descriptor, const std::filesystem::path& file) const {

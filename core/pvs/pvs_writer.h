@@ -56,13 +56,14 @@ class PvsWriter {
   void finish(const std::filesystem::path& file);
 
  private:
+  void setHead(const PvsFile& head);
   void write(const Bytes& bytes);
   uint32_t cells() const { return uint32_t(places_.size() - 1); }
   void writeFinished(int descriptor, const std::filesystem::path& file) const;
 
   std::filesystem::path part_;
   int descriptor_ = -1;
-  bool has_witnesses_ = false;
+  PvsFile head_;                   ///< as far as cells and costs depend on it
   uint64_t size_ = 0;              ///< of the part file
   std::vector<ByteRange> places_;  ///< in it, as PartialPvs has them
   ByteWriter costs_;               ///< payload of the finished file's COST section

@@ -11,13 +11,13 @@ void writePvs(const PvsFile& pvs, const std::function<void(const Bytes&)>& put) 
     put(bytes);
     checksum.add(bytes);
   };
-  write(writePrelude());
+  write(writePrelude(versionOf(pvs)));
   write(writeSection(kSectionHead, writeHeadPayload(pvs)));
   ByteWriter costs;
   for (uint32_t index = 0; index < pvs.cells.size(); ++index) {
     const CellPvs& cell = pvs.cells[index];
-    write(writeSection(kSectionCell, writeCellPayload(cell, index, pvs.has_witnesses)));
-    writeCost(costs, costOf(cell, index));
+    write(writeSection(kSectionCell, writeCellPayload(cell, index, pvs)));
+    writeCost(costs, costOf(cell, index), pvs);
   }
   write(writeSection(kSectionCost, costs.bytes()));
   write(writeSection(kSectionEnd, writeEndPayload(uint32_t(pvs.cells.size()), checksum.value())));

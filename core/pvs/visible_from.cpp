@@ -19,4 +19,12 @@ std::optional<std::span<const uint32_t>> visibleFrom(const PvsFile& pvs, const g
   return cell->triangles;
 }
 
+std::optional<VisibleIds> visibleFrom(const PvsFile& pvs, const glm::dvec3& position, DoorState state) {
+  const CellPvs* cell = cellAt(pvs, position);
+  if (cell == nullptr) return {};
+  VisibleIds ids{cell->triangles, {}};
+  if (state == DoorState::kOpen && cell->open) ids.added = cell->open->triangles;
+  return ids;
+}
+
 }  // namespace sightline

@@ -24,4 +24,18 @@ const CellPvs* cellAt(const PvsFile& pvs, const glm::dvec3& position);
 /// what the cell sees was baked, and is nothing.
 std::optional<std::span<const uint32_t>> visibleFrom(const PvsFile& pvs, const glm::dvec3& position);
 
+/// Whether the doors of a bake (PvsFile::doors) are in their places or away.
+enum class DoorState { kClosed, kOpen };
+
+/// What may be seen, in two runs of ids without one in common, each ascending.
+struct VisibleIds {
+  std::span<const uint32_t> triangles;  ///< with the doors closed
+  std::span<const uint32_t> added;      ///< with the doors open besides; empty where they are closed
+};
+
+/// The same for a state of the doors. A bake without doors, and with them kClosed, adds nothing. Open: the
+/// doors' own triangles are among those that may be seen, so the ids hold for doors of which some are open,
+/// and for half-open ones (docs/doors-and-gaps.md).
+std::optional<VisibleIds> visibleFrom(const PvsFile& pvs, const glm::dvec3& position, DoorState state);
+
 }  // namespace sightline

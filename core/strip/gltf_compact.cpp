@@ -13,6 +13,13 @@ namespace {
 
 using nlohmann::json;
 
+/// A mesh's primitives; it may have none.
+const json& primitivesOf(const json& mesh) {
+  static const json none = json::array();
+  const auto found = mesh.find("primitives");
+  return found == mesh.end() ? none : *found;
+}
+
 /// Calls visit(accessor) for each accessor that the primitive's vertices use: attributes, morph targets.
 /// Those that the document does not have are left out: the loader has not looked at all of them.
 template <typename Visit>
@@ -159,7 +166,7 @@ class Compactor {
   std::map<size_t, VertexGroup> groups(std::vector<PrimitiveCorners>& primitives) {
     AccessorSets sets(root_["accessors"].size());
     for (const json& mesh : root_["meshes"]) {
-      for (const json& primitive : mesh["primitives"]) {
+      for (const json& primitive : primitivesOf(mesh)) {
         std::optional<size_t> first;
         forVertexAccessors(root_, primitive, [&](size_t accessor) {
           sets.join(first.value_or(accessor), accessor);
@@ -173,7 +180,7 @@ class Compactor {
     }
     std::map<size_t, VertexGroup> groups;
     for (size_t m = 0; m < root_["meshes"].size(); ++m) {
-      const json& list = root_["meshes"][m]["primitives"];
+      const json& list = primitivesOf(root_["meshes"][m]);
       for (size_t p = 0; p < list.size(); ++p) {
         VertexGroup* group = nullptr;
         forVertexAccessors(root_, list[p], [&](size_t accessor) {

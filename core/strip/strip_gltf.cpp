@@ -183,6 +183,7 @@ class GltfStripper {
     const auto list = jsonMember(text_, jsonRoot(text_), "meshes");
     const std::vector<JsonSpan> meshes = jsonElements(text_, list.value());
     for (size_t m = 0; m < plans_.size(); ++m) {
+      if (plans_[m].primitives.empty()) continue;
       const JsonSpan primitives = jsonMember(text_, meshes[m], "primitives").value();
       const std::vector<JsonSpan> spans = jsonElements(text_, primitives);
       std::vector<size_t> gone;

@@ -52,6 +52,10 @@ TEST(StripCommand, DropsWhatIsNotSeenFromOutside) {
     EXPECT_EQ(left.triangleCount(), 12u);
     EXPECT_EQ(left.objects[0].name, "shell");
     expectRun(command, 1, {"is there already; name another file, or --overwrite it"});
+    // Of the bake of so few rays hardly anything is left but what --rays find.
+    expectRun("strip " + (files / (std::string("a") + kind)) + " -o " + out +
+                  " --overwrite --device cpu --n-rand 1 --max-rays 1 --validation-rays 0 --rays 50k",
+              0, {"rays: 50.0k from each cell meet ", ": 12 of 24 triangles (50.0 %)"});
     expectRun(command + " --overwrite --keep-objects", 0,
               {"13 of 24 triangles", "0 with all that they have"});
   }

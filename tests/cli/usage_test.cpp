@@ -5,7 +5,7 @@
 #include <array>
 #include <random>
 
-#include "core/cli/nearest.h"
+#include "core/base/nearest.h"
 #include "tests/cli/run_program.h"
 
 namespace sightline {

@@ -42,6 +42,15 @@ void requireInvariants(const PvsFile& pvs) {
             "ids that do not ascend");
     require(cell.triangles.empty() || cell.triangles.back() < pvs.triangle_count, "an id out of range");
     require(cell.witnesses.size() == (pvs.has_witnesses ? cell.triangles.size() : 0), "witnesses missing");
+    require(cell.open.has_value() != pvs.doors.empty(), "an open set without doors, or none with them");
+    if (cell.open) {
+      const std::vector<uint32_t>& added = cell.open->triangles;
+      require(std::adjacent_find(added.begin(), added.end(), std::greater_equal<>()) == added.end(),
+              "added ids that do not ascend");
+      require(added.empty() || added.back() < pvs.triangle_count, "an added id out of range");
+      require(cell.open->witnesses.size() == (pvs.has_witnesses ? added.size() : 0),
+              "open witnesses missing");
+    }
     for (const CellCost& cost : {costOf(cell, 0)}) {
       for (const double seconds :
            {cost.random_seconds, cost.border_seconds, cost.reverse_seconds, cost.seconds}) {
@@ -57,6 +66,8 @@ void requireRoundTrip(const PvsFile& pvs) {
   require(again.cells.size() == pvs.cells.size() && again.planned == pvs.planned, "other cells");
   for (size_t i = 0; i < pvs.cells.size(); ++i) {
     require(again.cells[i].triangles == pvs.cells[i].triangles, "another set");
+    require(!pvs.cells[i].open || again.cells[i].open->triangles == pvs.cells[i].open->triangles,
+            "another open set");
   }
   require(written(again) == once, "other bytes after reading and writing");
 }

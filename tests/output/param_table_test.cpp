@@ -45,13 +45,16 @@ TEST(ParamTable, NamesEachFieldOnce) {
 TEST(ParamTable, TheFileHoldsEachField) {
   PvsFile pvs = examplePvs();
   const Bytes before = writeHeadPayload(pvs);
-  forEachChange(pvs.params, [&](const Param&, const BakeParams& changed) {
+  forEachChange(pvs.params, [&](const Param& param, const BakeParams& changed) {
     PvsFile other = pvs;
     other.params = changed;
     const Bytes bytes = writeHeadPayload(other);
-    EXPECT_EQ(bytes.size(), before.size());
+    // What is off by default is not written, in an older version: existing files do not change.
+    const bool is_optional = param.since > versionOf(pvs);
+    EXPECT_EQ(bytes.size(), before.size() + (is_optional ? sizeof(float) : 0));
+    EXPECT_EQ(versionOf(other), is_optional ? param.since : versionOf(pvs));
     EXPECT_NE(bytes, before);
-    EXPECT_EQ(readHeadPayload(bytes, kPvsVersion).params, changed);
+    EXPECT_EQ(readHeadPayload(bytes, versionOf(other)).params, changed);
   });
 }
 

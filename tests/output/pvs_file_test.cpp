@@ -24,7 +24,9 @@ namespace {
 
 Bytes costBytes(const CellPvs& cell) {
   ByteWriter out;
-  writeCost(out, costOf(cell, 0));
+  PvsFile head;
+  if (cell.open) head.doors = {{"door", 0, 1}};
+  writeCost(out, costOf(cell, 0), head);
   return out.bytes();
 }
 
@@ -34,8 +36,10 @@ void expectEqual(const CellPvs& got, const CellPvs& want) {
   EXPECT_EQ(got.cell.size, want.cell.size);
   EXPECT_EQ(got.cell.rotation, want.cell.rotation);
   EXPECT_EQ(got.triangles, want.triangles);
-  const bool witnesses = !want.witnesses.empty();
-  EXPECT_EQ(writeCellPayload(got, 0, witnesses), writeCellPayload(want, 0, witnesses));  // statistics
+  PvsFile head;
+  head.has_witnesses = !want.witnesses.empty();
+  if (want.open) head.doors = {{"door", 0, 1}};
+  EXPECT_EQ(writeCellPayload(got, 0, head), writeCellPayload(want, 0, head));  // statistics, open set
   EXPECT_EQ(costBytes(got), costBytes(want));
   ASSERT_EQ(got.witnesses.size(), want.witnesses.size());
   for (size_t i = 0; i < want.witnesses.size(); ++i) {
@@ -161,9 +165,9 @@ TEST(PvsFile, Version3IsStillRead) {
 struct Sections {
   explicit Sections(const PvsFile& pvs) : head(writeSection(kSectionHead, writeHeadPayload(pvs))) {
     for (uint32_t i = 0; i < pvs.cells.size(); ++i) {
-      cells.push_back(writeSection(kSectionCell, writeCellPayload(pvs.cells[i], i, pvs.has_witnesses)));
+      cells.push_back(writeSection(kSectionCell, writeCellPayload(pvs.cells[i], i, pvs)));
       ByteWriter cost;
-      writeCost(cost, costOf(pvs.cells[i], i));
+      writeCost(cost, costOf(pvs.cells[i], i), pvs);
       costs.push_back(writeSection(kSectionCost, cost.bytes()));
     }
   }
@@ -171,7 +175,7 @@ struct Sections {
   /// A file that has these after its head.
   Bytes file(std::initializer_list<Bytes> sections, uint32_t cell_count) const {
     ByteWriter out;
-    out.raw(writePrelude());
+    out.raw(writePrelude(4));
     out.raw(head);
     for (const Bytes& section : sections) out.raw(section);
     const Bytes& all = out.bytes();
@@ -264,7 +268,7 @@ TEST(PvsFile, SaysWhatIsWrong) {
   bytes[8] = 9;
   EXPECT_NE(problemOf(bytes).find("version 9"), std::string::npos);
   bytes[8] = 2;
-  EXPECT_NE(problemOf(bytes).find("version 2 of the format, this program reads 3 to 4"), std::string::npos);
+  EXPECT_NE(problemOf(bytes).find("version 2 of the format, this program reads 3 to 5"), std::string::npos);
   bytes[0] = 'P';
   EXPECT_NE(problemOf(bytes).find("not a .pvs file"), std::string::npos);
   for (const std::string text : {"", "v", "{}", "v 0 0 0\n", "v 0 0 0\nv 1 0 0\nv 1 1 0\n"}) {

@@ -28,6 +28,11 @@ BakeReport exampleReport() {
   report.tree = TreeSummary{0.5, 12.5, 9, 10, 20, 1100, 9000};
   report.set = "array";
   report.cells = summarize(examplePvs());
+  report.cells[0].open_stats = report.cells[0].stats;
+  report.cells[0].open_added = 3;
+  report.doors = {{"door", 10, 2}};
+  report.see_through = {{"pane", 20, 2}};
+  report.leaks = {Leaks{0.5f, 7, 300, {1, 2, 3}, 1000, 0.25}, {}};
   report.warnings = {{{CellVerdict::kMeetsTriangles, "meets 12 triangles", 12}}, {}, {}};
   report.planned_cells = 3;
   report.resumed_cells = 1;
@@ -107,6 +112,20 @@ TEST(CellTable, NamesTheVerdicts) {
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 3);
   EXPECT_EQ(table.find("warning"), table.rfind("warning"));
   EXPECT_EQ(cellTable(cells, 1000).find("warning"), std::string::npos);
+}
+
+TEST(Report, TellsOfLeaks) {
+  EXPECT_EQ(leaksText({}), "");
+  EXPECT_EQ(
+      leaksText({0.005f, 7, 300, {1, 2.5, -3}, 1000, 0.25}),
+      "7 triangles of the set are seen only through gaps narrower than 0.005, triangle 300 through one at "
+      "(1, 2.5, -3); --smallest-hole 0.005 closes them");
+  const json text = json::parse(reportJson(exampleReport()));
+  EXPECT_EQ(text["cells"][0]["leaks"]["triangles"], 7);
+  EXPECT_EQ(text["cells"][0]["open"]["added"], 3);
+  EXPECT_TRUE(text["cells"][1]["leaks"].is_null());
+  EXPECT_FALSE(text["cells"][1].contains("open"));
+  EXPECT_EQ(text["features"]["doors"][0]["name"], "door");
 }
 
 TEST(Report, WithoutADeviceItSaysNull) {

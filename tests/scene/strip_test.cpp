@@ -627,6 +627,72 @@ TEST(StripGltf, DataUrisStayDataUris) {
   EXPECT_TRUE(uri.starts_with("data:application/octet-stream;base64,"));
 }
 
+/// Changes, adds or takes out something somewhere in the document.
+void mutate(json& value, StripRandom& random) {
+  if ((value.is_object() || value.is_array()) && !value.empty() && random() % 8 != 0) {
+    auto at = value.begin();
+    std::advance(at, random() % value.size());
+    if (random() % 12 == 0) {
+      value.erase(at);
+    } else {
+      mutate(*at, random);
+    }
+    return;
+  }
+  const json others[] = {0,
+                         1,
+                         2,
+                         3,
+                         5,
+                         255,
+                         5121,
+                         5126,
+                         -1,
+                         0.5,
+                         "x",
+                         nullptr,
+                         json::array(),
+                         json::object(),
+                         {{"extensions", {{"A_b", 1}}}},
+                         {0, 1}};
+  value = others[random() % std::size(others)];
+}
+
+TEST(Strip, DamagedDocumentsAreErrorsOrStripped) {
+  StripRandom random(8);
+  int stripped = 0, refused = 0;
+  for (int round = 0; round < 400; ++round) {
+    GltfFile file = round % 3 == 0 ? posedFile() : round % 3 == 1 ? richFile() : randomFile(random);
+    file.document["animations"] = {
+        {{"samplers", {{{"input", 0}, {"output", 1}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+    if (round % 2 == 0) file.document["buffers"] = {{{"byteLength", file.bin.size()}}};
+    for (uint32_t i = 0; i <= random() % 3; ++i) {
+      auto at = file.document.begin();
+      std::advance(at, random() % file.document.size());
+      mutate(*at, random);
+    }
+    const std::string glb = file.glb();
+    std::optional<Scene> scene;
+    try {
+      scene = loadText("a.glb", glb);
+    } catch (const Error&) {
+      continue;
+    }
+    try {
+      const std::vector<bool> seen = randomBits(scene->triangleCount(), random, 4);
+      const StrippedText left = stripText("a.glb", glb, seen, {.compact = round % 2 == 0});
+      ASSERT_GE(left.scene.triangleCount(), 1u);
+      ++stripped;
+    } catch (const Error& error) {
+      ASSERT_EQ(std::string(error.what()).find('\n'), std::string::npos);
+      ++refused;
+    }
+  }
+  EXPECT_GT(stripped, 50);
+  EXPECT_LT(refused, stripped / 4);
+}
+
 TEST(Strip, RefusesWhatWouldNotBeAScene) {
   EXPECT_EQ(errorOf([] { stripText("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", {false}); }),
             "a.obj: no triangle of it is seen, so nothing would be left; check the cells");

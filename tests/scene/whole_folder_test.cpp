@@ -42,8 +42,8 @@ bool isNoWholeScene(const fs::path& file, const std::string& error) {
   try {
     loadScene(file, {.repair = true});
     return true;
-  } catch (const Error&) {
-    return false;
+  } catch (const Error& repaired) {
+    return std::string_view(repaired.what()).find("no triangle is left") != std::string_view::npos;
   }
 }
 

@@ -9,6 +9,7 @@
 #include "core/sampling/random_segment.h"
 #include "core/sampling/stage_rays.h"
 #include "core/shared/set.h"
+#include "core/trace/narrow_gap.h"
 
 namespace sightline {
 namespace {
@@ -28,7 +29,8 @@ class NaiveDevice final : public Device {
   }
 
  public:
-  NaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) : inner_(std::move(inner)), scene_(scene) {}
+  NaiveDevice(std::unique_ptr<Device> inner, const Scene& scene, float smallest_hole)
+      : inner_(std::move(inner)), scene_(scene), smallest_hole_(smallest_hole) {}
 
   DeviceInfo info() const override {
     DeviceInfo info = inner_->info();
@@ -119,7 +121,8 @@ class NaiveDevice final : public Device {
         [&](const BatchRay&, const Hit&, std::span<const uint32_t> seen) {
           missing +=
               std::ranges::any_of(seen, [&](uint32_t triangle) { return !set_.contains(triangle); }) ? 1 : 0;
-        });
+        },
+        EachCandidate::kTested);
     return missing;
   }
 
@@ -169,9 +172,23 @@ class NaiveDevice final : public Device {
     }
   }
 
+  /// A triangle that a ray of the chunk sees.
+  struct Sighting {
+    uint32_t ray;
+    Hit hit;
+    bool ends_ray;  ///< else it is glass
+    bool counts = true;
+  };
+
+  /// Whether all that would change the set is tested for gaps, or of each triangle no more than it takes to
+  /// find the first ray that has room.
+  enum class EachCandidate { kTested, kUntilOneCounts };
+
   /// Traces the rays 0 .. count - 1 of generators that makeGenerator() returns, and hands those that have a
   /// direction to take(ray, hit, seen), in order. seen: the triangles that they see, that of the hit first.
-  void trace(uint64_t count, auto&& makeGenerator, auto&& take) {
+  /// Where a gap pinches the ray, its hit is what stands nearer beside it, and not seen.
+  void trace(uint64_t count, auto&& makeGenerator, auto&& take,
+             EachCandidate candidates = EachCandidate::kUntilOneCounts) {
     for (uint64_t first = 0; first < count; first += kChunk) {
       const auto size = static_cast<size_t>(std::min<uint64_t>(kChunk, count - first));
       batch_.resize(size);
@@ -185,13 +202,15 @@ class NaiveDevice final : public Device {
         }
       });
       inner_->traceRays(rays_, hits_);
-      const std::vector<SeenThrough> glass = inner_->traceGlass(rays_, hits_);
-      auto through = glass.begin();
+      listSightings();
+      if (smallest_hole_ > 0) dropPinched(candidates);
+      auto sighting = sightings_.begin();
       std::vector<uint32_t> seen;
       for (size_t i = 0; i < size; ++i) {
         seen.clear();
-        if (hits_[i].triangle != kNoTriangle) seen.push_back(hits_[i].triangle);
-        for (; through != glass.end() && through->ray == i; ++through) seen.push_back(through->triangle);
+        for (; sighting != sightings_.end() && sighting->ray == i; ++sighting) {
+          if (sighting->counts) seen.push_back(sighting->hit.triangle);
+        }
         if (!hasDirection(rays_[i])) continue;
         ++rays_traced_;
         take(batch_[i], hits_[i], seen);
@@ -199,8 +218,92 @@ class NaiveDevice final : public Device {
     }
   }
 
+  /// What the rays of the chunk see: ray by ray, what ends it first.
+  void listSightings() {
+    const std::vector<SeenThrough> glass = inner_->traceGlass(rays_, hits_);
+    auto through = glass.begin();
+    sightings_.clear();
+    for (uint32_t i = 0; i < hits_.size(); ++i) {
+      if (hits_[i].triangle != kNoTriangle) sightings_.push_back({i, hits_[i], true});
+      for (; through != glass.end() && through->ray == i; ++through) {
+        sightings_.push_back({i, {0, through->triangle}, false});
+      }
+    }
+  }
+
+  /// Sightings that would change the set, by triangle, of each in ascending index of their rays. Distances of
+  /// glass, which only gaps ask for, are filled in.
+  std::vector<uint32_t> listCandidates() {
+    std::vector<uint32_t> candidates;
+    for (uint32_t i = 0; i < sightings_.size(); ++i) {
+      Sighting& s = sightings_[i];
+      const auto found = set_.find(s.hit.triangle);
+      if (found != set_.end() && batch_[s.ray].index >= found->second.index) continue;
+      if (!s.ends_ray) {
+        const Corners c = cornersOf(scene_, s.hit.triangle);
+        s.hit.t = intersectTriangle(shearRay(rays_[s.ray]), c.a, c.b, c.c);
+      }
+      candidates.push_back(i);
+    }
+    std::sort(candidates.begin(), candidates.end(), [&](uint32_t a, uint32_t b) {
+      const Sighting &x = sightings_[a], &y = sightings_[b];
+      return x.hit.triangle != y.hit.triangle ? x.hit.triangle < y.hit.triangle
+                                              : batch_[x.ray].index < batch_[y.ray].index;
+    });
+    return candidates;
+  }
+
+  /// Some of listCandidates, all of one triangle.
+  struct CandidateRun {
+    uint32_t next, end;
+  };
+  std::vector<CandidateRun> runsOf(const std::vector<uint32_t>& candidates) const {
+    std::vector<CandidateRun> runs;
+    const auto triangle = [&](uint32_t i) { return sightings_[candidates[i]].hit.triangle; };
+    for (uint32_t i = 0; i < candidates.size(); ++i) {
+      if (i == 0 || triangle(i) != triangle(i - 1)) runs.push_back({i, i});
+      runs.back().end = i + 1;
+    }
+    return runs;
+  }
+
+  /// Tests the chunk's candidates for gaps: of each triangle the first, then the next two, the next four, ...
+  /// until one counts.
+  void dropPinched(EachCandidate tested) {
+    const std::vector<uint32_t> candidates = listCandidates();
+    std::vector<CandidateRun> runs = runsOf(candidates);
+    for (uint32_t most = tested == EachCandidate::kTested ? ~0u : 1; !runs.empty(); most *= 2) {
+      std::vector<Ray> rays;
+      std::vector<Hit> hits;
+      const auto endOf = [&](const CandidateRun& run) {
+        return run.end - run.next < most ? run.end : run.next + most;
+      };
+      for (const CandidateRun& run : runs) {
+        for (uint32_t i = run.next; i < endOf(run); ++i) {
+          rays.push_back(rays_[sightings_[candidates[i]].ray]);
+          hits.push_back(sightings_[candidates[i]].hit);
+        }
+      }
+      std::vector<Pinch> pinches;
+      rays_traced_ += findPinched(*inner_, scene_, smallest_hole_, rays, hits, pinches);
+      size_t at = 0;
+      std::erase_if(runs, [&](CandidateRun& run) {
+        bool any_counts = false;
+        for (const uint32_t end = endOf(run); run.next < end; ++run.next, ++at) {
+          Sighting& sighting = sightings_[candidates[run.next]];
+          any_counts = any_counts || !pinches[at].pinched;
+          if (!pinches[at].pinched) continue;
+          sighting.counts = false;
+          if (sighting.ends_ray) hits_[sighting.ray] = pinches[at].nearer;
+        }
+        return run.next == run.end || any_counts;
+      });
+    }
+  }
+
   std::unique_ptr<Device> inner_;
   const Scene& scene_;
+  float smallest_hole_;
   std::vector<Face> faces_;
   StageParams params_{};
   std::unordered_map<uint32_t, Found> set_;
@@ -212,12 +315,14 @@ class NaiveDevice final : public Device {
   std::vector<BatchRay> batch_;  ///< of a chunk
   std::vector<Ray> rays_;
   std::vector<Hit> hits_;
+  std::vector<Sighting> sightings_;
 };
 
 }  // namespace
 
-std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene) {
-  return std::make_unique<NaiveDevice>(std::move(inner), scene);
+std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene,
+                                        float smallest_hole) {
+  return std::make_unique<NaiveDevice>(std::move(inner), scene, smallest_hole);
 }
 
 }  // namespace sightline

@@ -11,6 +11,11 @@ namespace sightline {
 /// the host's threads and traced by `inner`, batch by batch; one thread inserts. Gives the set of `inner`,
 /// with the same witnesses, by gvs too: what `inner` itself must find of its own hits. scene: on `inner`,
 /// outlives the device.
-std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene);
+///
+/// smallest_hole: above 0, a ray that is pinched by gaps narrower than that (core/trace/narrow_gap.h) finds
+/// nothing, and as far as other rays follow from it, it ends at the gap. traceRays and traceViews stay as
+/// they are.
+std::unique_ptr<Device> makeNaiveDevice(std::unique_ptr<Device> inner, const Scene& scene,
+                                        float smallest_hole = 0);
 
 }  // namespace sightline

@@ -1,0 +1,16 @@
+#include "core/scene/seen_through.h"
+
+namespace sightline {
+
+Scene seenThrough(Scene scene, std::span<const NamedTriangles> glass) {
+  if (glass.empty()) return scene;
+  scene.surfaces.words.resize(scene.triangles.size(), 0);
+  for (const NamedTriangles& range : glass) {
+    for (uint32_t id = range.first; id - range.first < range.count; ++id) {
+      scene.surfaces.words[id] |= kSurfaceGlass;
+    }
+  }
+  return scene;
+}
+
+}  // namespace sightline
