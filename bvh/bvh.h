@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
@@ -6,6 +7,7 @@
 #include <vector>
 
 #include "core/shared/bvh_node.h"
+#include "core/shared/placement.h"
 
 namespace sightline {
 
@@ -40,14 +42,40 @@ static_assert(sizeof(BvhNode8) == 256);
 /// spatial splits a triangle may lie in several leaves, and their boxes together contain it: each holds the
 /// part between the leaf's planes, rounded outwards by up to 2^-20 of its largest coordinate.
 /// Empty slots have low = infinity, high = -infinity and come after the used ones.
+///
+/// A tree of two levels (of a scene with instances, core/scene/scene_tree.h) has a tree a mesh, in the mesh's
+/// space, and one over the instances' boxes, in one set of arrays. The upper tree's leaves hold one place of
+/// instance_order each.
 struct Bvh {
-  std::vector<BvhNode2> nodes2;      ///< root at 0, depth first; a scene of one leaf has child[1] empty
-  std::vector<BvhNode8> nodes8;      ///< the same tree collapsed, root at 0, depth first; same leaves
-  std::vector<uint32_t> references;  ///< triangle ids in leaf order; an id may occur several times
-  glm::vec3 low{0}, high{0};         ///< bounds of everything
+  std::vector<BvhNode2> nodes2;  ///< root at top2, depth first; a scene of one leaf has child[1] empty
+  std::vector<BvhNode8> nodes8;  ///< the same tree collapsed, root at top8, depth first; same leaves
+  std::vector<uint32_t>
+      references;  ///< triangles (of plain scenes: ids) in leaf order; one may occur several times
+  std::vector<InstanceRecord> instances;  ///< by id, last the plain triangles, if any; empty: one level
+  std::vector<uint32_t> instance_order;   ///< indices of instances in leaf order
+  uint32_t top2 = 0, top8 = 0;            ///< roots; 0 with one level
+  glm::vec3 low{0}, high{0};              ///< bounds of everything
   double sah_cost = 0;  ///< surface area heuristic: node cost 1, triangle cost 1; 0 if the root has no area
-  uint32_t depth = 0;   ///< inner nodes on the longest path of nodes2
+  uint32_t depth = 0;   ///< inner nodes on the longest path of nodes2; of two levels the deeper one
   double build_seconds = 0;
+
+  bool hasInstances() const { return !instances.empty(); }
+
+  /// The id of a triangle of an instance by what stands in references.
+  uint32_t idOf(const InstanceRecord& instance, uint32_t reference) const {
+    if ((instance.roots.z & kInstanceInPlace) != 0) return plainId(reference);
+    return instance.ids.x + (reference - instance.ids.w);
+  }
+
+  /// The id of a triangle in no mesh by its index: those of the instances before it come first.
+  uint32_t plainId(uint32_t index) const {
+    const auto after =
+        std::upper_bound(instances.begin(), instances.end() - 1, index,
+                         [](uint32_t value, const InstanceRecord& i) { return value < i.ids.z; });
+    if (after == instances.begin()) return index;
+    const uvec4& ids = (after - 1)->ids;
+    return index - ids.z + ids.x + ids.y;
+  }
 };
 
 /// Builds the tree; the same input gives the same bytes for any number of threads.

@@ -52,7 +52,14 @@ static inline SetRef setOf(const StageRef* stage) {
 }
 
 static inline Corners cornersOf(const StageRef* stage, uint triangle) {
+#if SL_INSTANCES
+  const StoredTriangle at = findTriangle(stage->scene, stage->scene.instance_count, triangle);
+  __global const SceneTriangle* record = &stage->scene.triangles[stage->place_of[at.triangle]];
+  if (at.instance != kNoTriangle) return placedCorners(&stage->scene.instances[at.instance], record);
+  return recordCorners(record);
+#else
   return recordCorners(&stage->scene.triangles[stage->place_of[triangle]]);
+#endif
 }
 
 /// Rays are counted by work-group.

@@ -70,129 +70,6 @@ static inline float8 preciseDepth8(float8 fax, float8 fay, float8 faz, float8 fb
   return convert_float8((mixed | (det == 0.0)) ? (double8)0.0 : depth);
 }
 
-static inline void intersectRecord8(SceneRef scene, uint place, Packet* p) {
-  __global const TriangleRecord* record = &scene.triangles[place];
-  __global const float* vertices = record->vertices;
-  float8 az = vertices[p->axis_z] - p->origin_z;
-  float8 ax = (vertices[p->axis_x] - p->origin_x) - p->shear_x * az;
-  float8 ay = (vertices[p->axis_y] - p->origin_y) - p->shear_y * az;
-  float8 bz = vertices[3 + p->axis_z] - p->origin_z;
-  float8 bx = (vertices[3 + p->axis_x] - p->origin_x) - p->shear_x * bz;
-  float8 by = (vertices[3 + p->axis_y] - p->origin_y) - p->shear_y * bz;
-  float8 cz = vertices[6 + p->axis_z] - p->origin_z;
-  float8 cx = (vertices[6 + p->axis_x] - p->origin_x) - p->shear_x * cz;
-  float8 cy = (vertices[6 + p->axis_y] - p->origin_y) - p->shear_y * cz;
-  float8 u = cx * by - cy * bx;
-  float8 v = ax * cy - ay * cx;
-  float8 w = bx * ay - by * ax;
-  float8 lowest = least(u, least(v, w));
-  float8 highest = most(u, most(v, w));
-  int8 inside = (lowest >= 0.0f) | (highest <= 0.0f);
-  if (laneBits(inside) == 0) return;
-
-  float8 det = u + v + w;
-  float8 reach = most(most(most(fabs(ax), fabs(ay)), most(fabs(bx), fabs(by))), most(fabs(cx), fabs(cy)));
-  float8 nearest = least(az, least(bz, cz));
-  float8 farthest = most(az, most(bz, cz));
-  float8 area = fabs(det);
-  float8 trusted = area * most(fabs(nearest), fabs(farthest));
-  int8 rough = (trusted < most(reach * reach * (farthest - nearest), (float8)kUnderflowGuard)) |
-               (area < kUnderflowGuard) | (u == 0.0f) | (v == 0.0f) | (w == 0.0f);
-  float8 depth = (u * az + v * bz + w * cz) / det;
-  if (laneBits(rough & inside) != 0) {
-    float8 precise = preciseDepth8(ax, ay, az, bx, by, bz, cx, cy, cz);
-    depth = rough ? precise : depth;
-  }
-  float8 t = depth * p->shear_z;
-  uint id = record->id;
-  // An infinite t is no hit: p->t starts at infinity, and the id of a miss is the largest.
-  int8 closer = (t < p->t) | ((t == p->t) & (id < p->triangle) & (t < as_float(0x7f800000u)));
-  int8 hit = inside & (t > 0.0f) & closer;
-#if SL_HAS_SURFACES
-  const uint near = laneBits(inside & (t > 0.0f) & (t <= p->t));
-  if (near == 0) return;
-  const uint surface = scene.surfaces[kSurfaceHeaderWords + place];
-  if ((surface & kSurfaceGlass) != 0) {
-    p->glass |= near;
-    return;
-  }
-  if (surface != 0) {
-    const int8 bits = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-    hit = hit & (((int8)(int)lanesThatHold(scene, surface, vertices, p, laneBits(hit)) & bits) != 0);
-  }
-#endif
-  p->t = hit ? t : p->t;
-  p->triangle = hit ? (uint8)id : p->triangle;
-}
-
-/// Visits the tree with all lanes; lanes with t < 0 take no part.
-static void tracePacket(SceneRef scene, Packet* p) {
-  float8 stack_near[SL_MAX_DEPTH];
-  uint stack_child[SL_MAX_DEPTH];
-  uint stack_count[SL_MAX_DEPTH];
-  uint size = 0;
-  uint child = 0;
-  uint count = 0;
-  // Where a node keeps the planes that the rays meet first and last, in floats; child 1 has them two further.
-  const size_t back_x = p->back_x, ahead_x = 1 - back_x;
-  const size_t back_y = 4 + p->back_y, ahead_y = 5 - p->back_y;
-  const size_t back_z = 8 + p->back_z, ahead_z = 9 - p->back_z;
-  for (;;) {
-    while (count == 0) {
-      __global const float* node = (__global const float*)&scene.nodes[child];
-      __global const uint* links = (__global const uint*)(node + 12);
-      __global const float* first_x = node + back_x;
-      __global const float* first_y = node + back_y;
-      __global const float* first_z = node + back_z;
-      __global const float* last_x = node + ahead_x;
-      __global const float* last_y = node + ahead_y;
-      __global const float* last_z = node + ahead_z;
-      float8 near0 =
-          most(most(slab(first_x[0], p->inverse_x, p->near_x), slab(first_y[0], p->inverse_y, p->near_y)),
-               most(slab(first_z[0], p->inverse_z, p->near_z), (float8)0.0f));
-      float8 far0 =
-          least(least(slab(last_x[0], p->inverse_x, p->far_x), slab(last_y[0], p->inverse_y, p->far_y)),
-                least(slab(last_z[0], p->inverse_z, p->far_z), p->t));
-      float8 near1 =
-          most(most(slab(first_x[2], p->inverse_x, p->near_x), slab(first_y[2], p->inverse_y, p->near_y)),
-               most(slab(first_z[2], p->inverse_z, p->near_z), (float8)0.0f));
-      float8 far1 =
-          least(least(slab(last_x[2], p->inverse_x, p->far_x), slab(last_y[2], p->inverse_y, p->far_y)),
-                least(slab(last_z[2], p->inverse_z, p->far_z), p->t));
-      uint meets0 = laneBits(near0 <= far0);
-      uint meets1 = laneBits(near1 <= far1);
-      if (meets0 != 0 && meets1 != 0) {
-        // First the child that most lanes of both enter first.
-        uint both = meets0 | meets1;
-        uint sooner1 = laneBits(near1 < near0) & both;
-        bool swap = 2 * popcount(sooner1) > popcount(both);
-        stack_near[size] = swap ? near0 : near1;
-        size_t first = swap ? 1 : 0;
-        stack_child[size] = links[1 - first];
-        stack_count[size] = links[3 - first];
-        ++size;
-        child = links[first];
-        count = links[2 + first];
-      } else if (meets0 != 0) {
-        child = links[0];
-        count = links[2];
-      } else if (meets1 != 0) {
-        child = links[1];
-        count = links[3];
-      } else {
-        break;
-      }
-    }
-    for (uint i = child; i < child + count; ++i) intersectRecord8(scene, i, p);
-    do {
-      if (size == 0) return;
-      --size;
-    } while (laneBits(stack_near[size] <= p->t) == 0);
-    child = stack_child[size];
-    count = stack_count[size];
-  }
-}
-
 /// Bits of the lanes whose direction's sign or depth axis is that of lane `first`.
 static inline uint lanesLike(uint first, uint bits) {
   return (bits >> first & 1u) != 0 ? bits : ~bits;
@@ -203,6 +80,33 @@ static inline float8 inverseSlope(float8 direction, float8 smallest) {
   float8 bounded = direction < 0.0f ? -smallest : smallest;
   return 1.0f / (fabs(direction) < smallest ? bounded : direction);
 }
+
+#define SL_INTERSECT intersectStored8
+#define SL_VERTICES __global
+#include "cl_kernels/packet_triangle.inl"
+#undef SL_INTERSECT
+#undef SL_VERTICES
+
+/// A triangle that is stored where it is.
+static inline void intersectRecord8(SceneRef scene, uint place, Packet* p) {
+  intersectStored8(scene, place, scene.triangles[place].vertices, scene.triangles[place].id, p);
+}
+
+#define SL_WALK walkTriangles8
+#define SL_WALK_PARAM
+#define SL_VISIT(i) intersectRecord8(scene, i, p)
+#include "cl_kernels/packet_walk.inl"
+#undef SL_WALK
+#undef SL_WALK_PARAM
+#undef SL_VISIT
+
+#if SL_INSTANCES
+#include "cl_kernels/packet_instance.cl"
+#else
+static inline void tracePacket(SceneRef scene, const RayPacket* rays, Packet* p) {
+  walkTriangles8(scene, 0, p);
+}
+#endif
 
 /// The nearest hits of all lanes; t of a miss is not a number to use. Lanes of one class (signs of the
 /// direction, axis of depth) go through the tree together; rays that were put side by side well are of one
@@ -264,7 +168,7 @@ static HitPacket traceLanes(SceneRef scene, const RayPacket* rays) {
     p.t = takes_part ? (float8)as_float(0x7f800000u) : (float8)-1.0f;
     p.triangle = (uint8)kNoTriangle;
     p.glass = 0;
-    tracePacket(scene, &p);
+    tracePacket(scene, rays, &p);
     hits.t = takes_part ? p.t : hits.t;
     hits.triangle = takes_part ? p.triangle : hits.triangle;
     hits.glass |= p.glass & taken;

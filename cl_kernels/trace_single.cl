@@ -6,33 +6,10 @@
 // the order (core/shared/triangle.h).
 #include "cl_kernels/scene.cl"
 
-static inline Corners recordCorners(__global const SceneTriangle* record) {
-  Corners corners;
-#if SL_PACKET > 1
-  __global const float* v = record->vertices;
-  corners.a = vec3(v[0], v[1], v[2]);
-  corners.b = vec3(v[3], v[4], v[5]);
-  corners.c = vec3(v[6], v[7], v[8]);
-#else
-  corners.a = record->v0.xyz;
-  corners.b = record->v1.xyz;
-  corners.c = record->v2.xyz;
-#endif
-  return corners;
-}
-
-static inline uint recordId(__global const SceneTriangle* record) {
-#if SL_PACKET > 1
-  return record->id;
-#else
-  return as_uint(record->v0.w);
-#endif
-}
-
-/// glass: set where the ray meets glass before the best hit so far.
-static inline void intersectRecord(SceneRef scene, uint place, ShearedRay ray, Hit* best, bool* glass) {
-  const Corners v = recordCorners(&scene.triangles[place]);
-  const uint id = recordId(&scene.triangles[place]);
+/// What a hit on the triangle of a record counts for: the best hit, if it is nearer, or as near with a lower id.
+/// place: of the record; v: its corners in the world. glass: set where the ray meets glass before the best hit so far.
+static inline void intersectCorners(SceneRef scene, uint place, Corners v, uint id, ShearedRay ray, Hit* best,
+                                    bool* glass) {
   const float t = intersectTriangle(ray, v.a, v.b, v.c);
 #if SL_HAS_SURFACES
   if (!(t > 0.0f && t <= best->t)) return;
@@ -76,9 +53,35 @@ static inline uint popPlace(const uint2* stack, uint* size, float t) {
 static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit* best, bool* glass) {
   const uint first = leaf & kLeafFirstMask;
   const uint count = (leaf >> kLeafCountShift & 7u) + 1;
-  for (uint i = 0; i < count; ++i) intersectRecord(scene, first + i, ray, best, glass);
+  for (uint i = 0; i < count; ++i) {
+    __global const SceneTriangle* record = &scene.triangles[first + i];
+    intersectCorners(scene, first + i, recordCorners(record), recordId(record), ray, best, glass);
+  }
 }
 
+/// Which of a node's children the ray goes on to; the other one waits on the stack, if the ray meets both.
+static inline uint descend(SceneRef scene, uint place, BoxRay box_ray, float t, uint2* stack, uint* size) {
+  const BvhNode2 node = scene.nodes[place];
+  const float2 range0 =
+      intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
+  const float2 range1 =
+      intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
+  const bool meets0 = range0.x <= min(range0.y, t);
+  const bool meets1 = range1.x <= min(range1.y, t);
+  const uint place0 = placeOfChild(&node, 0);
+  const uint place1 = placeOfChild(&node, 1);
+  if (meets0 && meets1) {
+    const bool swap = range1.x < range0.x;
+    stack[(*size)++] = swap ? (uint2)(as_uint(range0.x), place0) : (uint2)(as_uint(range1.x), place1);
+    return swap ? place1 : place0;
+  }
+  if (meets0 || meets1) return meets0 ? place0 : place1;
+  return popPlace(stack, size, t);
+}
+
+#if SL_INSTANCES
+#include "cl_kernels/single_instance.cl"
+#else
 /// glass: set where the ray meets glass before what ends it, and perhaps where only behind.
 static Hit traceRay(SceneRef scene, Ray ray, bool* glass) {
   Hit best = missHit();
@@ -92,24 +95,7 @@ static Hit traceRay(SceneRef scene, Ray ray, bool* glass) {
   uint leaf = SL_NO_LEAF;  // waits for its triangles to be intersected
   while (place != SL_WALK_END) {
     while ((place & kLeafBit) == 0) {
-      const BvhNode2 node = scene.nodes[place];
-      const float2 range0 =
-          intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y));
-      const float2 range1 =
-          intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
-      const bool meets0 = range0.x <= min(range0.y, best.t);
-      const bool meets1 = range1.x <= min(range1.y, best.t);
-      const uint place0 = placeOfChild(&node, 0);
-      const uint place1 = placeOfChild(&node, 1);
-      if (meets0 && meets1) {
-        const bool swap = range1.x < range0.x;
-        stack[size++] = swap ? (uint2)(as_uint(range0.x), place0) : (uint2)(as_uint(range1.x), place1);
-        place = swap ? place1 : place0;
-      } else if (meets0 || meets1) {
-        place = meets0 ? place0 : place1;
-      } else {
-        place = popPlace(stack, &size, best.t);
-      }
+      place = descend(scene, place, box_ray, best.t, stack, &size);
       if (isLeaf(place) && leaf == SL_NO_LEAF) {
         leaf = place;
         place = popPlace(stack, &size, best.t);
@@ -126,3 +112,4 @@ static Hit traceRay(SceneRef scene, Ray ray, bool* glass) {
   }
   return best;
 }
+#endif

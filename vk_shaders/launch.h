@@ -16,7 +16,9 @@ SL_STRUCT(VulkanLaunch) {
   SL_ADDRESSES(SL_STAGE_BUFFERS, kStageBuffers)
   // The scene. A leaf is a place in the order in which the driver got the triangles.
   uint64 tlas;         ///< acceleration structure
-  uint64 part_starts;  ///< uint[]: first leaf of each bottom-level structure
+  uint64 part_starts;  ///< uint[]: first leaf of each instance in the top-level structure
+  uint64 part_ids;     ///< uint[]: what is added to the ids of its leaves
+  uint64 instances;    ///< InstanceRecord[] by id
   uint64 leaf_ids;     ///< uint[]: leaf -> triangle id
   uint64 corners;      ///< float[9] a leaf
   uint64 surfaces;     ///< uint[]: core/shared/surface.h, in leaf order; 0: all are opaque from both sides
@@ -30,8 +32,8 @@ SL_STRUCT(VulkanLaunch) {
   uint raster_first;       ///< index in the batch of the hemicube's first sample
   uint chunk_count;
   uint triangle_count;  ///< of the scene
+  uint instance_count;  ///< of the scene; 0: it is plain
   float raster_near;    ///< distance of the near plane
-  uint unused;          ///< makes the size a multiple of 8, as C++ does
 };
 
 SL_NAMESPACE_END

@@ -5,9 +5,19 @@
 #include "core/shared/gvs_reverse.h"
 #include "core/shared/random_ray.h"
 
+#define SL_INSTANCES_PARAM uint instances
+#define SL_INSTANCE_IDS(k) Buffer_InstanceRecord(SL_THE_LAUNCH.instances).at[k].ids
+#include "core/shared/find_triangle.inl"
+
 Corners cornersOf(uint triangle) {
-  uint leaf = SL_BUFFER(place_of, triangle);
-  return Corners(leafCorner(leaf, 0u), leafCorner(leaf, 1u), leafCorner(leaf, 2u));
+  StoredTriangle stored = StoredTriangle(triangle, kNoTriangle);
+  uint count = SL_THE_LAUNCH.instance_count;
+  if (count > 0u) stored = findTriangle(0u, count, triangle);
+  uint leaf = SL_BUFFER(place_of, stored.triangle);
+  Corners corners = Corners(leafCorner(leaf, 0u), leafCorner(leaf, 1u), leafCorner(leaf, 2u));
+  if (stored.instance == kNoTriangle) return corners;
+  InstanceRecord instance = Buffer_InstanceRecord(SL_THE_LAUNCH.instances).at[stored.instance];
+  return placeCorners(instance.place, instance.roots.z, corners.a, corners.b, corners.c);
 }
 
 #include "core/shared/stage_glue.inl"

@@ -5,6 +5,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #include "core/shared/bvh_node.h"
 #include "core/shared/counters.h"
+#include "core/shared/placement.h"
 #include "core/shared/stage_launch.h"
 
 // Arrays by address: Buffer_TYPE, as SL_ADDRESS names them.
@@ -37,6 +38,9 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Buffer_Hit {
 };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Buffer_ViewFrame {
   ViewFrame at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer Buffer_InstanceRecord {
+  InstanceRecord at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Floats {
   float at[];

@@ -13,6 +13,7 @@
 struct LeafHit {
   float t;
   uint leaf;
+  uint part;  ///< the instance of the top level that it was met in
 };
 
 const float kFarthest = 3.402823466e38f;
@@ -62,11 +63,11 @@ LeafHit traceNearest(Ray ray) {
 #endif
   }
   if (rayQueryGetIntersectionTypeEXT(query, true) == gl_RayQueryCommittedIntersectionNoneEXT) {
-    return LeafHit(0.0f, kNoTriangle);
+    return LeafHit(0.0f, kNoTriangle, 0u);
   }
   uint part = rayQueryGetIntersectionInstanceCustomIndexEXT(query, true);
   uint primitive = rayQueryGetIntersectionPrimitiveIndexEXT(query, true);
-  return LeafHit(rayQueryGetIntersectionTEXT(query, true), leafOf(part, primitive));
+  return LeafHit(rayQueryGetIntersectionTEXT(query, true), leafOf(part, primitive), part);
 }
 
 #else
@@ -80,8 +81,8 @@ uint itemIndex() {
 LeafHit traceNearest(Ray ray) {
   traceRayEXT(accelerationStructureEXT(SL_THE_LAUNCH.tlas), gl_RayFlagsOpaqueEXT, 0xffu, 0u, 0u, 0u,
               ray.origin.xyz, 0.0f, ray.direction.xyz, kFarthest, 0);
-  if (found.y == kNoTriangle) return LeafHit(0.0f, kNoTriangle);
-  return LeafHit(uintBitsToFloat(found.x), leafOf(found.y, found.z));
+  if (found.y == kNoTriangle) return LeafHit(0.0f, kNoTriangle, 0u);
+  return LeafHit(uintBitsToFloat(found.x), leafOf(found.y, found.z), found.y);
 }
 
 #endif
@@ -91,12 +92,13 @@ LeafHit nearestHit(Ray ray) {
 #if SL_HAS_SURFACES
   met_glass = false;
 #endif
-  if (!hasDirection(ray)) return LeafHit(0.0f, kNoTriangle);
+  if (!hasDirection(ray)) return LeafHit(0.0f, kNoTriangle, 0u);
   return traceNearest(ray);
 }
 
 uint triangleOf(LeafHit hit) {
-  return hit.leaf == kNoTriangle ? kNoTriangle : Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[hit.leaf];
+  if (hit.leaf == kNoTriangle) return kNoTriangle;
+  return Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[hit.leaf] + Buffer_uint(SL_THE_LAUNCH.part_ids).at[hit.part];
 }
 
 /// Nearest hit of a ray, by triangle; t of a miss is 0.

@@ -16,7 +16,7 @@ namespace {
 std::optional<uint64_t> hashAhead(const Scene& scene, const SessionOptions& options) {
   checkScene(scene);
   for (const NamedTriangles& object : options.see_through) {
-    if (uint64_t(object.first) + object.count <= scene.triangles.size()) continue;
+    if (uint64_t(object.first) + object.count <= scene.triangleCount()) continue;
     throw Error("an object to see through is beyond the scene: " + object.name, kExitUsage);
   }
   if (options.see_through.empty()) return {};

@@ -171,6 +171,8 @@ std::vector<ReportFact> sceneFacts(const BakeReport& report) {
   std::vector<ReportFact> facts = {{"triangles", std::to_string(scene.triangles)},
                                    {"vertices", std::to_string(scene.vertices)},
                                    {"objects", std::to_string(scene.objects)},
+                                   {"instances", std::to_string(scene.instances)},
+                                   {"triangles stored", std::to_string(scene.stored_triangles)},
                                    {"hash of the scene", hashText(scene.hash)},
                                    {"hash of all sets", hashText(hashResult(report.cells))}};
   for (const std::string& warning : sceneWarnings(scene)) facts.push_back({"note", warning});

@@ -62,8 +62,9 @@ TreeSummary summarize(const Bvh& bvh) {
   tree.nodes2 = bvh.nodes2.size();
   tree.nodes8 = bvh.nodes8.size();
   tree.references = bvh.references.size();
-  tree.bytes =
-      tree.nodes2 * sizeof(BvhNode2) + tree.nodes8 * sizeof(BvhNode8) + tree.references * sizeof(uint32_t);
+  tree.bytes = tree.nodes2 * sizeof(BvhNode2) + tree.nodes8 * sizeof(BvhNode8) +
+               tree.references * sizeof(uint32_t) + bvh.instances.size() * sizeof(InstanceRecord) +
+               bvh.instance_order.size() * sizeof(uint32_t);
   return tree;
 }
 
@@ -82,7 +83,9 @@ SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t has
           scene.opaque_mask_triangles,
           countSurfaces(scene.surfaces),
           scene.warnings,
-          scene.offset};
+          scene.offset,
+          scene.instances.size(),
+          scene.triangles.size()};
 }
 
 std::vector<CellWarning> warningsOf(const BakeReport& report, size_t index) {

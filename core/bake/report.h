@@ -35,6 +35,8 @@ struct SceneSummary {
   SurfaceCounts surfaces;             ///< what rays meet that does not simply end them
   std::vector<std::string> warnings;  ///< of loading (Scene)
   glm::dvec3 offset{0.0};             ///< of the scene
+  uint64_t instances = 0;             ///< 0: the scene is traced as plain triangles
+  uint64_t stored_triangles = 0;      ///< in the scene and its tree
 };
 SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t hash);
 

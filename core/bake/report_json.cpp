@@ -18,6 +18,8 @@ Json toJson(const SceneSummary& scene) {
           {"single_sided_triangles", scene.single_sided},
           {"hidden_nodes", scene.hidden_nodes},
           {"offset", {scene.offset.x, scene.offset.y, scene.offset.z}},
+          {"instances", scene.instances},
+          {"stored_triangles", scene.stored_triangles},
           {"surfaces",
            {{"masked_triangles", scene.surfaces.masked},
             {"see_through_triangles", scene.surfaces.glass},

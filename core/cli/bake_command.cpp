@@ -269,6 +269,10 @@ void runBake(const BakeOptions& options) {
   sayDoors(bake.head().doors);
   say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangleCount(),
                   counted(scene.objects.size(), "object"), counted(bake.head().planned.size(), "cell")));
+  if (scene.hasInstances()) {
+    say(fmt::format("instances: {}; {} triangles are stored (--flatten writes them out)",
+                    scene.instances.size(), scene.triangles.size()));
+  }
   BakeReport report = startReport(options, scene, bake);
 
   int exit_code = 0;

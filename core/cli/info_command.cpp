@@ -62,6 +62,7 @@ bool looksLikeMillimetres(const glm::dvec3& extent, double median_edge) {
 /// Where the scene lies, in its file's coordinates, and how large it and its detail are.
 void showSize(const Scene& scene) {
   const Bounds bounds = sceneBounds(scene);
+  const Bounds bounds = sceneBounds(scene);
   const glm::dvec3 extent = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);
   const double median_edge = medianEdge(scene);
   if (scene.offset == glm::dvec3(0.0)) {
@@ -82,6 +83,10 @@ void showScene(const std::filesystem::path& file, const SceneLoadOptions& option
   const Scene scene = loadScene(file, options);
   row("scene", file.string());
   row("triangles", std::to_string(scene.triangleCount()));
+  if (scene.hasInstances()) {
+    row("instances", fmt::format("{} of {} meshes; {} triangles are stored", scene.instances.size(),
+                                 scene.meshes.size(), scene.triangles.size()));
+  }
   row("vertices", std::to_string(scene.vertexCount()));
   showSize(scene);
   row("degenerate",

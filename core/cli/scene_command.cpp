@@ -25,6 +25,7 @@ struct SceneArguments {
   std::string cells;
   uint64_t triangles = 2'000'000;
   uint64_t seed = 1;
+  uint32_t kinds = 0;  ///< 0: nothing repeats
   bool overwrite = false;
 };
 
@@ -33,8 +34,11 @@ void run(const SceneArguments& arguments) {
   requireSeparate(files, {});
   for (const std::filesystem::path& file : files) requireNew(file, arguments.overwrite);
   const TextOutputs outputs({files.data(), 1});
-  const std::vector<ViewCell> cells = generateCells(arguments.name, arguments.triangles, arguments.seed);
-  const Scene scene = generateScene(arguments.name, arguments.triangles, arguments.seed);
+  const auto& [name, output, cells_file, triangles, seed, kinds, overwrite] = arguments;
+  const std::vector<ViewCell> cells =
+      kinds > 0 ? generateRepeatedCells(name, triangles, seed, kinds) : generateCells(name, triangles, seed);
+  const Scene scene =
+      kinds > 0 ? generateRepeated(name, triangles, seed, kinds) : generateScene(name, triangles, seed);
   if (isStandardOutput(arguments.output)) {
     writeObj(scene, "standard output", [&](std::string_view piece) { outputs.write(piece); });
   } else {
@@ -45,6 +49,10 @@ void run(const SceneArguments& arguments) {
   fmt::print("{}: {} triangles, {} vertices, {}, {:.0f} x {:.0f} x {:.0f} m\n", arguments.output,
              scene.triangleCount(), scene.vertexCount(), counted(scene.objects.size(), "object"), size.x,
              size.y, size.z);
+  if (scene.hasInstances()) {
+    fmt::print("{}: {} triangles are stored, in {} of {} different ones\n", arguments.output,
+               scene.triangles.size(), counted(scene.instances.size(), "instance"), scene.meshes.size());
+  }
   if (arguments.cells.empty()) return;
   saveCells(cells, arguments.cells);
   fmt::print("{}: {}\n", arguments.cells, counted(cells.size(), "view cell"));
@@ -81,13 +89,19 @@ void addSceneCommand(CLI::App& app) {
                    "File to write: .obj or .glb; - writes OBJ to standard output")
       ->required();
   command
-      ->add_option("--triangles", arguments->triangles,
-                   "How many, at most: 1000 to 20000000. Extent and detail grow with it")
+      ->add_option(
+          "--triangles", arguments->triangles,
+          "How many, at most: 1000 to 20000000, with --kinds to 1000000000. Extent and detail grow with it")
       ->transform(wholeNumber())
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Another seed, another scene of the kind")
       ->transform(wholeNumber())
       ->capture_default_str();
+  command
+      ->add_option("--kinds", arguments->kinds,
+                   "City and plant: of so many different blocks or bays, which repeat. They are stored once "
+                   "(in .glb); all count as triangles")
+      ->transform(wholeNumber());
   command
       ->add_option("--cells", arguments->cells,
                    "Also write ten view cells in the scene's free space to this .json file")

@@ -5,11 +5,13 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/scene/instances.h"
 
 namespace sightline {
 
 void placeElsewhere(Scene& scene, std::vector<ViewCell>& cells, double scale, double move) {
   if (scale == 1 && move == 0) return;
+  scene = flatten(std::move(scene));
   for (glm::vec3& position : scene.positions) {
     position = glm::vec3(glm::dvec3(position) * scale + move);
     const glm::vec3 size = glm::abs(position);

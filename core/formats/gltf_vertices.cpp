@@ -44,6 +44,10 @@ GltfVertices::GltfVertices(const GltfDocument& document, const GltfTree& tree, G
                            const std::string& file, SceneBuilder& builder)
     : document_(document), tree_(tree), data_(data), file_(file), builder_(builder) {}
 
+std::array<uint64_t, 16> GltfVertices::inPlace() {
+  return bitsOf(glm::dmat4(1.0));
+}
+
 GltfVertexSource GltfVertices::source(const GltfInstance& instance, const GltfPrimitive& primitive) const {
   const GltfNode& node = document_.nodes[instance.node];
   GltfVertexSource source;

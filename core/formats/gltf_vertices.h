@@ -42,6 +42,9 @@ class GltfVertices {
   GltfVertices(const GltfDocument& document, const GltfTree& tree, GltfData& data, const std::string& file,
                SceneBuilder& builder);
 
+  /// GltfVertexSource::to_world of vertices that stay where they are.
+  static std::array<uint64_t, 16> inPlace();
+
   /// For a primitive with positions.
   GltfVertexSource source(const GltfInstance& instance, const GltfPrimitive& primitive) const;
 

@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <map>
+#include <optional>
 #include <set>
 
 #include "core/base/error.h"
@@ -17,9 +20,13 @@
 #include "core/formats/load_scene.h"
 #include "core/formats/loaders.h"
 #include "core/formats/scene_builder.h"
+#include "core/scene/instances.h"
 
 namespace sightline {
 namespace {
+
+/// Of the triangles of shared meshes.
+const GltfSurface kOpaqueSurface{};
 
 /// A small file may place a mesh, and a mesh hold an accessor, any number of times. What that may cost is a
 /// number of steps for each of the file's bytes: a step makes a vertex or a triangle. (A forest of 5,000
@@ -44,7 +51,7 @@ class GltfLoader {
         file_bytes_(file_bytes),
         data_(data),
         name_(name),
-        opaque_masks_(options.opaque_masks),
+        options_(options),
         world_(world.parent),
         builder_(options, world.offset),
         vertices_(document, tree_, data, name, builder_),
@@ -59,8 +66,10 @@ class GltfLoader {
                         spend(count * kStepsAnObject);
                       }});
     decodeDracoMeshes();
+    findMeshes();
     reserve();
     for (const GltfInstance& instance : tree_.instances) {
+      if (placeMesh(instance)) continue;
       const GltfMesh& mesh = document_.meshes[instance.mesh];
       for (size_t i = 0; i < mesh.primitives.size(); ++i) addPrimitive(instance, i);
     }
@@ -80,6 +89,137 @@ class GltfLoader {
   static uint64_t triangleCount(const GltfPrimitive& primitive, uint64_t elements) {
     if (primitive.mode == 4) return elements / 3;
     return elements < 3 ? 0 : elements - 2;
+  }
+
+  /// A mesh with the morph targets of its nodes, which several of them show.
+  struct SharedMesh {
+    std::vector<const GltfInstance*> users;
+    bool read = false;
+    std::optional<uint32_t> number;   ///< in the builder, if it is an instance anywhere
+    std::vector<uint64_t> triangles;  ///< of each primitive
+    uint64_t repaired = 0;
+    Bounds bounds;
+  };
+  using MeshKey = std::pair<size_t, std::vector<double>>;
+
+  MeshKey keyOf(const GltfInstance& instance) const {
+    const auto& weights = document_.nodes[instance.node].weights;
+    return {instance.mesh, weights ? *weights : document_.meshes[instance.mesh].weights};
+  }
+
+  uint64_t triangleCount(const GltfMesh& mesh) const {
+    uint64_t sum = 0;
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      if (hasTriangles(primitive)) sum += triangleCount(primitive, elementCount(primitive));
+    }
+    return sum;
+  }
+
+  /// Collects what several nodes show without a skin, where that pays: other scenes are placed in double, as
+  /// they are. Nothing where there is something to see through: whether a ray passes is kept for each
+  /// triangle of the plain scene.
+  void findMeshes() {
+    if (options_.cull_back_faces) return;
+    for (const GltfInstance& instance : tree_.instances) {
+      for (const GltfPrimitive& primitive : document_.meshes[instance.mesh].primitives) {
+        if (primitive.material.alpha != GltfMaterial::Alpha::kOpaque || primitive.material.glass) {
+          return shared_.clear();
+        }
+      }
+      if (!document_.nodes[instance.node].skin) shared_[keyOf(instance)].users.push_back(&instance);
+    }
+    std::erase_if(shared_, [&](const auto& entry) {
+      return entry.second.users.size() < 2 || usesLittleOfItsVertices(document_.meshes[entry.first.first]);
+    });
+    uint64_t all = 0, repeated = 0;
+    for (const GltfInstance& instance : tree_.instances)
+      all += triangleCount(document_.meshes[instance.mesh]);
+    for (const auto& [key, mesh] : shared_) {
+      repeated += (mesh.users.size() - 1) * triangleCount(document_.meshes[key.first]);
+    }
+    if (!instancesPay(all - repeated, all)) shared_.clear();
+  }
+
+  /// Where all meshes of a file share one list of vertices, each would be read through once a mesh.
+  bool usesLittleOfItsVertices(const GltfMesh& mesh) const {
+    uint64_t vertices = 0, elements = 0;
+    for (const GltfPrimitive& primitive : mesh.primitives) {
+      if (!hasTriangles(primitive)) continue;
+      vertices += document_.accessors[*primitive.positions].count;
+      elements += elementCount(primitive);
+    }
+    return vertices > 8 * elements;
+  }
+
+  SharedMesh* sharedMesh(const GltfInstance& instance) {
+    if (document_.nodes[instance.node].skin) return nullptr;
+    const auto found = shared_.find(keyOf(instance));
+    return found == shared_.end() ? nullptr : &found->second;
+  }
+
+  Placement placementOf(const GltfInstance& instance) const {
+    const glm::dmat4& to_world = instance.to_world;
+    const auto column = [&](int i) { return vec4(glm::vec3(to_world[i]), 0.0f); };
+    return {column(0), column(1), column(2), column(3)};
+  }
+
+  /// The mesh in its own space. Only vertices that its triangles use.
+  void readMesh(const GltfInstance& instance, SharedMesh& mesh) {
+    mesh.read = true;
+    SceneBuilder builder(options_, glm::dvec3(0.0));
+    GltfVertices vertices(document_, tree_, data_, name_, builder);
+    into_ = &builder;
+    from_ = &vertices;
+    for (size_t i = 0; i < document_.meshes[instance.mesh].primitives.size(); ++i) {
+      const uint64_t before = builder.triangleCount();
+      addPrimitive(instance, i);
+      mesh.triangles.push_back(builder.triangleCount() - before);
+    }
+    into_ = &builder_;
+    from_ = &vertices_;
+    Scene made = usedPart(builder.takeMesh());
+    if (made.triangles.empty()) return;
+    mesh.repaired = made.repaired_triangles;
+    mesh.bounds = sceneBounds(made);
+    const auto places = std::ranges::count_if(
+        mesh.users, [&](const GltfInstance* user) { return canPlace(placementOf(*user), mesh.bounds); });
+    if (places >= 2) mesh.number = builder_.addMesh(std::move(made.positions), std::move(made.triangles));
+  }
+
+  /// Without the vertices that no triangle uses.
+  static Scene usedPart(Scene scene) {
+    constexpr uint32_t kUnused = ~0u;
+    std::vector<uint32_t> number(scene.positions.size(), kUnused);
+    for (const glm::uvec3& t : scene.triangles) number[t.x] = number[t.y] = number[t.z] = 0;
+    uint32_t next = 0;
+    for (size_t i = 0; i < number.size(); ++i) {
+      if (number[i] == kUnused) continue;
+      scene.positions[next] = scene.positions[i];
+      number[i] = next++;
+    }
+    scene.positions.resize(next);
+    for (glm::uvec3& t : scene.triangles) t = {number[t.x], number[t.y], number[t.z]};
+    return scene;
+  }
+
+  /// False: the node's mesh is no instance.
+  bool placeMesh(const GltfInstance& instance) {
+    SharedMesh* const mesh = sharedMesh(instance);
+    if (mesh == nullptr) return false;
+    if (!mesh->read) readMesh(instance, *mesh);
+    const Placement place = placementOf(instance);
+    if (!mesh->number || !canPlace(place, mesh->bounds)) return false;
+    builder_.place(*mesh->number, place);
+    builder_.countRepaired(mesh->repaired);
+    for (size_t i = 0; i < mesh->triangles.size(); ++i) {
+      if (mesh->triangles[i] == 0) continue;
+      beginObject(instance, i);
+      builder_.countPlaced(mesh->triangles[i]);
+      if (!document_.meshes[instance.mesh].primitives[i].material.double_sided) {
+        builder_.countSingleSided(mesh->triangles[i]);
+      }
+    }
+    return true;
   }
 
   /// Throws Error when the steps so far are too many for the file.
@@ -167,15 +307,16 @@ class GltfLoader {
   void reserve() {
     spendOnObjects();
     uint64_t positions = 0;
-    uint64_t triangles = 0;
+    uint64_t triangles = 0, stored = 0;
     std::set<GltfVertexSource> sources;
     std::set<size_t> index_accessors;
     for (const GltfInstance& instance : tree_.instances) {
       for (const GltfPrimitive& primitive : document_.meshes[instance.mesh].primitives) {
         if (!hasTriangles(primitive)) continue;
         triangles += triangleCount(primitive, elementCount(primitive));
+        if (sharedMesh(instance) == nullptr) stored += triangleCount(primitive, elementCount(primitive));
         if (primitive.indices) index_accessors.insert(*primitive.indices);
-        if (sources.insert(vertices_.source(instance, primitive)).second) {
+        if (sources.insert(sourceOf(instance, primitive)).second) {
           positions += document_.accessors[*primitive.positions].count;
         }
         if (positions > kMaxElements || triangles > kMaxElements) {
@@ -183,7 +324,7 @@ class GltfLoader {
         }
       }
     }
-    const uint64_t bytes = (positions + triangles) * 12;
+    const uint64_t bytes = (positions + stored) * 12;
     const uint64_t memory = uint64_t(sysconf(_SC_PHYS_PAGES)) * uint64_t(sysconf(_SC_PAGE_SIZE));
     if (bytes > memory) {
       throw Error(fmt::format("{}: {} vertices and {} triangles need more memory than this machine has",
@@ -194,7 +335,7 @@ class GltfLoader {
     spendOnVertices(sources);
     spendOnPlaces();
     spend(triangles);
-    builder_.reserve(positions, triangles);
+    builder_.reserve(positions, stored);
   }
 
   void checkIndices(size_t accessor) {
@@ -212,36 +353,43 @@ class GltfLoader {
     GltfReader(document_, data_, accessor, name_);
   }
 
+  /// What the primitive's vertices come from; those of shared meshes are in the mesh's own space.
+  GltfVertexSource sourceOf(const GltfInstance& instance, const GltfPrimitive& primitive) {
+    GltfVertexSource source = vertices_.source(instance, primitive);
+    if (into_ != &builder_) source.to_world = GltfVertices::inPlace();
+    return source;
+  }
+
   void addPrimitive(const GltfInstance& instance, size_t index) {
     const GltfPrimitive& primitive = document_.meshes[instance.mesh].primitives[index];
     if (!hasTriangles(primitive)) return;
     beginObject(instance, index);
-    const GltfVertexRun& vertices = vertices_.add(vertices_.source(instance, primitive));
+    const GltfVertexRun& vertices = from_->add(sourceOf(instance, primitive));
     if (document_.nodes[instance.node].skin && primitive.joints.empty()) ++unbound_;
-    surface_ = &alpha_.surface(instance.mesh, index);
-    builder_.beginSurface(surface_->flags);
-    const uint64_t before = builder_.triangleCount();
+    surface_ = into_ == &builder_ ? &alpha_.surface(instance.mesh, index) : &kOpaqueSurface;
+    into_->beginSurface(surface_->flags);
+    const uint64_t before = into_->triangleCount();
     const uint64_t elements = elementCount(primitive);
     const std::string place = fmt::format("{}: meshes[{}].primitives[{}]", name_, instance.mesh, index);
     if (primitive.mode == 4 && elements % 3 != 0) {
-      if (!builder_.repairs()) {
+      if (!into_->repairs()) {
         throw Error(
             fmt::format("{}: {} corners are no multiple of 3; --repair drops the last", place, elements));
       }
-      builder_.countRepaired(1);
+      into_->countRepaired(1);
     }
     if (primitive.indices) {
       addIndexed(primitive, vertices, place);
     } else {
       addTriangles(primitive.mode, elements, vertices, place, [](uint64_t i) { return i; });
     }
-    const uint64_t added = builder_.triangleCount() - before;
+    const uint64_t added = into_->triangleCount() - before;
     const bool alpha = primitive.material.alpha != GltfMaterial::Alpha::kOpaque;
-    if (alpha) builder_.countAlpha(added);
-    if (primitive.material.alpha == GltfMaterial::Alpha::kMask && opaque_masks_)
-      builder_.countOpaqueMasks(added);
-    if (primitive.material.glass && !alpha) builder_.countGlass(added);
-    if (!primitive.material.double_sided) builder_.countSingleSided(added);
+    if (alpha) into_->countAlpha(added);
+    if (primitive.material.alpha == GltfMaterial::Alpha::kMask && options_.opaque_masks)
+      into_->countOpaqueMasks(added);
+    if (primitive.material.glass && !alpha) into_->countGlass(added);
+    if (!primitive.material.double_sided) into_->countSingleSided(added);
   }
 
   void addIndexed(const GltfPrimitive& primitive, const GltfVertexRun& vertices, const std::string& place) {
@@ -263,10 +411,10 @@ class GltfLoader {
     const SceneBuilder::Place place = [&] { return fmt::format("{}, triangle {}", where, triangle); };
     const auto add = [&](int64_t a, int64_t b, int64_t c) {
       if (vertices.isMirrored(a)) std::swap(b, c);
-      const uint64_t before = builder_.triangleCount();
-      builder_.addPolygon(std::array{a, b, c}, vertices.range, place);
-      if (surface_->mask && builder_.triangleCount() > before) {
-        builder_.surfaceOfLast(alpha_.addTriangle(*surface_, a, b, c));
+      const uint64_t before = into_->triangleCount();
+      into_->addPolygon(std::array{a, b, c}, vertices.range, place);
+      if (surface_->mask && into_->triangleCount() > before) {
+        into_->surfaceOfLast(alpha_.addTriangle(*surface_, a, b, c));
       }
     };
     if (mode == 4) {
@@ -304,8 +452,8 @@ class GltfLoader {
     if (instance.copy) name += fmt::format("#{}", *instance.copy);
     if (!mesh_name.empty() && mesh_name != name) name += "/" + mesh_name;
     if (mesh.primitives.size() > 1) name += fmt::format("/{}", primitive);
-    builder_.beginObject(name, name,
-                         GltfPart{uint32_t(instance.node), uint32_t(instance.mesh), uint32_t(primitive)});
+    into_->beginObject(name, name,
+                       GltfPart{uint32_t(instance.node), uint32_t(instance.mesh), uint32_t(primitive)});
   }
 
   void warn() {
@@ -331,15 +479,19 @@ class GltfLoader {
   uint64_t steps_ = 0;
   GltfData& data_;
   const std::string& name_;
-  const bool opaque_masks_;
+  SceneLoadOptions options_;
   glm::dmat4 world_;  ///< from the document's space to the scene's
   SceneBuilder builder_;
   GltfTree tree_;
   GltfVertices vertices_;
   GltfAlpha alpha_;
   const GltfSurface* surface_ = nullptr;  ///< of the primitive in work
-  uint64_t other_counts_ = 0;             ///< accessors whose Draco stream has another count
-  uint64_t unbound_ = 0;                  ///< primitives of skinned nodes without joints
+  std::map<MeshKey, SharedMesh> shared_;
+  // Where primitives are added: to the scene, or to a mesh.
+  SceneBuilder* into_ = &builder_;
+  GltfVertices* from_ = &vertices_;
+  uint64_t other_counts_ = 0;  ///< accessors whose Draco stream has another count
+  uint64_t unbound_ = 0;       ///< primitives of skinned nodes without joints
 };
 
 }  // namespace

@@ -19,6 +19,8 @@ struct SceneLoadOptions {
   bool cull_back_faces = false;
   /// Fill Scene::faces.
   bool faces = false;
+  /// Write out meshes that would be instances (instancesPay). Ids, hash and sets are the same either way.
+  bool flatten = false;
   /// Extensions that a glTF file may require although they are unknown: it is loaded without what they add.
   std::vector<std::string> ignored_extensions = {};
   /// Read what the scene names (buffers, materials, pictures) wherever it lies, not only in the scene's
@@ -33,9 +35,11 @@ struct SceneLoadOptions {
 /// not show (OBJ), by extension, any case. Polygons are triangulated, concave ones too. glTF: the default
 /// scene with its nodes' transforms; skins in the pose of their joints, morph targets with their default
 /// weights; mirrored nodes keep their front (the corners' order is turned). Of textures only
-/// those of alpha masks are read. Coordinates are read in double; where floats would not hold them,
-/// Scene::offset is taken off. Throws Error with file and place. The largest files: 20 million triangles take
-/// about 1.7 GiB in all as OBJ, half of it as GLB or PLY, and a sixth of OBJ's time.
+/// those of alpha masks are read. A mesh that several nodes show is stored once, where that pays
+/// (instancesPay) and the file has no surfaces: nothing that one sees through, and no sides. Coordinates are
+/// read in double; where floats would not hold them, Scene::offset is taken off. Throws Error with file and
+/// place. The largest files: 20 million triangles take about 1.7 GiB in all as OBJ, half of it as GLB or PLY,
+/// and a sixth of OBJ's time.
 Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options = {});
 
 }  // namespace sightline

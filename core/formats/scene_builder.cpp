@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/scene/instances.h"
 #include "core/scene/precision_warning.h"
 #include "core/scene/triangle_area.h"
 
@@ -47,12 +48,11 @@ size_t utf8Length(std::string_view text) {
 
 uint64_t countDegenerate(const Scene& scene) {
   return tbb::parallel_reduce(
-      tbb::blocked_range<size_t>(0, scene.triangles.size(), 1 << 16), uint64_t(0),
-      [&](const tbb::blocked_range<size_t>& range, uint64_t count) {
-        for (size_t i = range.begin(); i != range.end(); ++i) {
-          const glm::uvec3& t = scene.triangles[i];
-          if (hasZeroArea(scene.positions[t.x], scene.positions[t.y], scene.positions[t.z])) ++count;
-        }
+      tbb::blocked_range<uint32_t>(0, scene.triangleCount(), 1 << 16), uint64_t(0),
+      [&](const tbb::blocked_range<uint32_t>& range, uint64_t count) {
+        scene.visitTriangles(range.begin(), range.end(), [&](uint32_t, const auto& t) {
+          if (hasZeroArea(t[0], t[1], t[2])) ++count;
+        });
         return count;
       },
       std::plus<>());
@@ -127,7 +127,7 @@ void SceneBuilder::failAtBadVertex(size_t bad, const Place& face) const {
 }
 
 void SceneBuilder::closeObject() {
-  const auto end = uint32_t(scene_.triangles.size());
+  const auto end = uint32_t(triangleCount());
   object_.triangle_count = end - object_.first_triangle;
   if (object_.triangle_count != 0) scene_.objects.push_back(object_);
   object_.first_triangle = end;
@@ -210,8 +210,41 @@ void SceneBuilder::reserve(uint64_t positions, uint64_t triangles) {
   scene_.triangles.reserve(scene_.triangles.size() + triangles);
 }
 
+uint32_t SceneBuilder::addMesh(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
+  meshes_.push_back({std::move(positions), std::move(triangles)});
+  return uint32_t(meshes_.size() - 1);
+}
+
+void SceneBuilder::place(uint32_t mesh, const Placement& place) {
+  closeObject();
+  SceneInstance instance;
+  instance.mesh = mesh;
+  instance.first_id = uint32_t(triangleCount());
+  instance.place = place;
+  scene_.instances.push_back(instance);
+}
+
+/// Puts the meshes behind what is in none; writes them out where they do not pay.
+void SceneBuilder::joinMeshes() {
+  if (scene_.instances.empty()) return;
+  for (MeshData& mesh : meshes_) {
+    const auto first = uint32_t(scene_.positions.size());
+    scene_.meshes.push_back({first, uint32_t(mesh.positions.size()), uint32_t(scene_.triangles.size()),
+                             uint32_t(mesh.triangles.size())});
+    scene_.positions.insert(scene_.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const glm::uvec3& t : mesh.triangles) scene_.triangles.push_back(t + first);
+    mesh = {};
+  }
+  countInstances(scene_);
+  if (scene_.vertexCount() > kMaxElements) throw Error("the instances have too many vertices");
+  if (flatten_ || !instancesPay(scene_.triangles.size(), scene_.triangleCount())) {
+    scene_ = sightline::flatten(std::move(scene_));
+  }
+}
+
 Scene SceneBuilder::finish(const std::string& file) {
   closeObject();
+  joinMeshes();
   if (scene_.triangles.empty()) {
     if (scene_.repaired_triangles != 0) {
       throw Error(fmt::format("{}: no triangle is left; all {} were dropped as bad", file,

@@ -43,7 +43,10 @@ class SceneBuilder {
 
   /// offset: of the scene that is made.
   SceneBuilder(const SceneLoadOptions& options, const glm::dvec3& offset)
-      : repair_(options.repair), faces_(options.faces), may_need_offset_(!options.offset) {
+      : repair_(options.repair),
+        flatten_(options.flatten),
+        faces_(options.faces),
+        may_need_offset_(!options.offset) {
     scene_.offset = offset;
   }
 
@@ -84,7 +87,18 @@ class SceneBuilder {
   void countHiddenNodes(uint64_t nodes) { scene_.hidden_nodes += nodes; }
   /// What it names of the file is cleaned (cleanName): reports take UTF-8 only.
   void warn(std::string_view line) { scene_.warnings.push_back(cleanName(line)); }
-  uint64_t triangleCount() const { return scene_.triangles.size(); }
+  uint64_t triangleCount() const { return scene_.triangles.size() + placed_; }
+
+  /// Adds a mesh for instances; indices count within its positions. Returns its number.
+  uint32_t addMesh(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles);
+
+  /// Places a mesh (canPlace): its triangles come next, and are told to the objects that begin by
+  /// countPlaced.
+  void place(uint32_t mesh, const Placement& place);
+  void countPlaced(uint64_t triangles) { placed_ += triangles; }
+
+  /// What there is, for a mesh: no checks, no objects.
+  Scene takeMesh() { return std::move(scene_); }
 
   /// Room for so many more, to avoid copies.
   void reserve(uint64_t positions, uint64_t triangles);
@@ -94,6 +108,12 @@ class SceneBuilder {
   Scene finish(const std::string& file);
 
  private:
+  struct MeshData {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+  };
+
+  void joinMeshes();
   void addTriangle(const glm::uvec3& triangle, const Place& place);
   bool usable(std::span<const int64_t> corners, const VertexRange& vertices, const Place& place) const;
   void add(const glm::vec3& position, const glm::dvec3& full, const Place& place);
@@ -102,7 +122,7 @@ class SceneBuilder {
   [[noreturn]] void failAtBadVertex(size_t bad, const Place& face) const;
   void closeObject();
 
-  bool repair_;
+  bool repair_, flatten_;
   bool faces_;
   bool may_need_offset_;
   uint32_t face_ = ~0u;  ///< wraps to 0 with the first; only faces without triangles can be more than 2^32
@@ -117,6 +137,8 @@ class SceneBuilder {
   std::vector<glm::vec3> corners_;  ///< of the polygon in work
   std::vector<glm::uvec3> cut_;
   uint64_t cut_tests_left_ = kMaxCutTests;
+  std::vector<MeshData> meshes_;
+  uint64_t placed_ = 0;  ///< triangles of instances
 };
 
 }  // namespace sightline

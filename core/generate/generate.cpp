@@ -16,7 +16,7 @@ const std::vector<Generator>& generators() {
   static const std::vector<Generator> all = {
       {{"city", "streets in a grid, facades with recessed windows and ledges, trees, cars"},
        cityParts,
-       cityCells},
+       [](uint64_t triangles, uint64_t seed) { return cityCells(triangles, seed); }},
       {{"canyon", "terrain with overhanging cliffs, bridges and arches of rock, hoodoos, boulders"},
        canyonParts,
        canyonCells},
@@ -30,10 +30,10 @@ const std::vector<Generator>& generators() {
   return all;
 }
 
-const Generator& find(const std::string& name, uint64_t triangles) {
-  if (triangles < kMinGeneratedTriangles || triangles > kMaxGeneratedTriangles) {
+const Generator& find(const std::string& name, uint64_t triangles, uint64_t most = kMaxGeneratedTriangles) {
+  if (triangles < kMinGeneratedTriangles || triangles > most) {
     throw Error("triangle count " + std::to_string(triangles) + " is out of range " +
-                    std::to_string(kMinGeneratedTriangles) + ".." + std::to_string(kMaxGeneratedTriangles),
+                    std::to_string(kMinGeneratedTriangles) + ".." + std::to_string(most),
                 kExitUsage);
   }
   std::string names;
@@ -42,6 +42,18 @@ const Generator& find(const std::string& name, uint64_t triangles) {
     names += (names.empty() ? "" : ", ") + g.info.name;
   }
   throw Error("no generated scene is called '" + name + "': there are " + names, kExitUsage);
+}
+
+void checkRepeated(const std::string& name, uint64_t triangles, uint32_t kinds) {
+  find(name, triangles, kMaxRepeatedTriangles);
+  if (!canRepeat(name)) {
+    throw Error("the scene '" + name + "' has nothing that repeats: city and plant have", kExitUsage);
+  }
+  if (kinds < 1 || kinds > kMaxKinds) {
+    throw Error(
+        "number of kinds " + std::to_string(kinds) + " is out of range 1.." + std::to_string(kMaxKinds),
+        kExitUsage);
+  }
 }
 
 }  // namespace
@@ -57,6 +69,22 @@ const std::vector<GeneratedSceneInfo>& generatedScenes() {
 
 Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed) {
   return assembleScene(find(name, triangles).parts(triangles, seed), triangles, seed);
+}
+
+bool canRepeat(const std::string& name) {
+  return name == "city" || name == "plant";
+}
+
+Scene generateRepeated(const std::string& name, uint64_t triangles, uint64_t seed, uint32_t kinds) {
+  checkRepeated(name, triangles, kinds);
+  return assembleModules((name == "city" ? repeatedCity : repeatedPlant)(triangles, seed, kinds), triangles,
+                         seed);
+}
+
+std::vector<ViewCell> generateRepeatedCells(const std::string& name, uint64_t triangles, uint64_t seed,
+                                            uint32_t kinds) {
+  checkRepeated(name, triangles, kinds);
+  return name == "city" ? cityCells(triangles, seed, true) : plantCells(triangles, seed);
 }
 
 std::vector<ViewCell> generateCells(const std::string& name, uint64_t triangles, uint64_t seed) {

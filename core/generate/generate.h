@@ -11,6 +11,10 @@ namespace sightline {
 /// Range of triangle counts that generateScene takes.
 inline constexpr uint64_t kMinGeneratedTriangles = 1'000;
 inline constexpr uint64_t kMaxGeneratedTriangles = 20'000'000;
+/// The same with instances.
+inline constexpr uint64_t kMaxRepeatedTriangles = 1'000'000'000;
+/// Most kinds of modules.
+inline constexpr uint32_t kMaxKinds = 1000;
 
 /// The scenes that can be generated, with a line on each for --help.
 struct GeneratedSceneInfo {
@@ -26,6 +30,18 @@ const std::vector<GeneratedSceneInfo>& generatedScenes();
 /// pipe is an object of its own, with its vertices shared. Throws Error with exit code 2 for an unknown name
 /// or a count out of kMinGeneratedTriangles..kMaxGeneratedTriangles.
 Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed);
+
+/// Generates "city" or "plant" of at most so many kinds of modules (blocks of houses; bays of a plant, half
+/// of them mirrored, and aisles), 1 .. kMaxKinds, each an instance: the count is of all, whatever is stored
+/// once. Else as generateScene.
+Scene generateRepeated(const std::string& name, uint64_t triangles, uint64_t seed, uint32_t kinds);
+
+/// Whether generateRepeated knows the scene.
+bool canRepeat(const std::string& name);
+
+/// Ten view cells in free space of the scene that generateRepeated makes of the same arguments.
+std::vector<ViewCell> generateRepeatedCells(const std::string& name, uint64_t triangles, uint64_t seed,
+                                            uint32_t kinds);
 
 /// Ten view cells in free space of the scene that generateScene makes of the same arguments: of each kind of
 /// the thesis some, named by it: flat-1 (a rectangle that looks along its normal), box-1 (a volume), street-1

@@ -8,6 +8,7 @@
 //        +------------------> x
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/generate/building.h"
 #include "core/generate/generator_random.h"
@@ -36,14 +37,14 @@ struct CityLayout {
   Axis x, z;  // streets at x.center(i) run along z
 };
 
-Axis drawAxis(GeneratorRandom random, uint32_t blocks, float block_size) {
+Axis drawAxis(GeneratorRandom random, uint32_t blocks, float block_size, bool even) {
   Axis axis;
   float at = 0;
   for (uint32_t i = 0; i <= blocks; ++i) {
     const float street = i == blocks / 2 ? 20.0f : random.uniform(13.0f, 17.0f);
     axis.low.push_back(at);
     axis.high.push_back(at + street);
-    at += street + block_size * random.uniform(0.85f, 1.15f);
+    at += street + block_size * (even ? 1.0f : random.uniform(0.85f, 1.15f));
   }
   const float middle = axis.end() / 2;
   for (float& v : axis.low) v -= middle;
@@ -51,11 +52,12 @@ Axis drawAxis(GeneratorRandom random, uint32_t blocks, float block_size) {
   return axis;
 }
 
-CityLayout drawCity(uint64_t triangles, uint64_t seed) {
+/// even: all blocks are of one size.
+CityLayout drawCity(uint64_t triangles, uint64_t seed, bool even = false) {
   // Half of the growth goes into the number of blocks, half into their detail.
   const float blocks = 0.055f * std::sqrt(float(triangles));
   const uint32_t n = std::max(2u, uint32_t(std::sqrt(blocks) + 0.5f));
-  return {drawAxis({seed, 0xc17a, 0}, n, 62), drawAxis({seed, 0xc17a, 1}, n, 46)};
+  return {drawAxis({seed, 0xc17a, 0}, n, 62, even), drawAxis({seed, 0xc17a, 1}, n, 46, even)};
 }
 
 std::string numbered(const char* what, uint32_t i, uint32_t j, uint32_t k) {
@@ -95,13 +97,26 @@ uint32_t drawFloors(GeneratorRandom& random, float from_center) {
   return uint32_t(std::max(2.0f, random.chance(0.12f) ? tall * 1.8f + 2 : tall));
 }
 
-void addBlock(std::vector<ScenePart>& parts, const CityLayout& city, uint32_t i, uint32_t j, uint64_t seed) {
-  GeneratorRandom random(seed, 0xb10c, uint64_t(i) * 65536 + j);
-  const float x0 = city.x.block_low(i) + kPavement, x1 = city.x.block_high(i) - kPavement;
-  const float z0 = city.z.block_low(j) + kPavement, z1 = city.z.block_high(j) - kPavement;
+/// A block's extent.
+struct BlockPlace {
+  float x0, x1, z0, z1;
+};
+
+BlockPlace blockAt(const CityLayout& city, uint32_t i, uint32_t j) {
+  return {city.x.block_low(i) + kPavement, city.x.block_high(i) - kPavement, city.z.block_low(j) + kPavement,
+          city.z.block_high(j) - kPavement};
+}
+
+float fromCenter(const CityLayout& city, uint32_t i, uint32_t j) {
   const float n = float(city.x.blocks());
   const float dx = (float(i) + 0.5f) / n - 0.5f, dz = (float(j) + 0.5f) / n - 0.5f;
-  const float from_center = std::min(1.0f, 2 * std::sqrt(dx * dx + dz * dz));
+  return std::min(1.0f, 2 * std::sqrt(dx * dx + dz * dz));
+}
+
+/// The houses of block i, j in a place.
+void addBlock(std::vector<ScenePart>& parts, const BlockPlace& place, float from_center, uint32_t i,
+              uint32_t j, GeneratorRandom random) {
+  const auto [x0, x1, z0, z1] = place;
   const float lot = (x1 - x0) / float(kLotsAlong);
   for (uint32_t row = 0; row < 2; ++row) {
     for (uint32_t k = 0; k < kLotsAlong; ++k) {
@@ -211,14 +226,43 @@ std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed) {
   std::vector<ScenePart> parts;
   addGround(parts, city);
   for (uint32_t i = 0; i < city.x.blocks(); ++i) {
-    for (uint32_t j = 0; j < city.z.blocks(); ++j) addBlock(parts, city, i, j, seed);
+    for (uint32_t j = 0; j < city.z.blocks(); ++j) {
+      addBlock(parts, blockAt(city, i, j), fromCenter(city, i, j), i, j,
+               {seed, 0xb10c, uint64_t(i) * 65536 + j});
+    }
   }
   addStreets(parts, city, seed);
   return parts;
 }
 
-std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed) {
-  const CityLayout city = drawCity(triangles, seed);
+RepeatedScene repeatedCity(uint64_t triangles, uint64_t seed, uint32_t kinds) {
+  const CityLayout city = drawCity(triangles, seed, true);
+  RepeatedScene scene;
+  addGround(scene.parts, city);
+  addStreets(scene.parts, city, seed);
+  const BlockPlace first = blockAt(city, 0, 0);
+  const BlockPlace local = {0, first.x1 - first.x0, 0, first.z1 - first.z0};
+  std::map<uint32_t, size_t> made;
+  for (uint32_t i = 0; i < city.x.blocks(); ++i) {
+    for (uint32_t j = 0; j < city.z.blocks(); ++j) {
+      const uint32_t kind = GeneratorRandom(seed, 0x71d5, uint64_t(i) * 65536 + j).below(kinds);
+      const auto [entry, is_new] = made.emplace(kind, scene.modules.size());
+      if (is_new) {
+        scene.modules.emplace_back();
+        addBlock(scene.modules.back().parts, local, GeneratorRandom(seed, 0x71d6, kind).unit(), 0, 0,
+                 {seed, 0xb10c, kind});
+      }
+      const BlockPlace at = blockAt(city, i, j);
+      scene.modules[entry->second].places.push_back(
+          {"block-" + std::to_string(i) + "-" + std::to_string(j),
+           {vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0), vec4(at.x0, 0, at.z0, 0)}});
+    }
+  }
+  return scene;
+}
+
+std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed, bool even) {
+  const CityLayout city = drawCity(triangles, seed, even);
   const uint32_t n = city.x.blocks(), m = n / 2;
   const double x = city.x.center(m), z = city.z.center(m);  // the crossing of the two avenues
   const double x_length = city.x.end() - city.x.start(), z_length = city.z.end() - city.z.start();

@@ -8,6 +8,7 @@
 //        +------------------> x
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "core/generate/plant_pipes.h"
 #include "core/generate/plant_units.h"
@@ -46,6 +47,7 @@ class PlantBuilder {
  public:
   explicit PlantBuilder(const PlantLayout& plant) : plant_(plant) {}
   std::vector<ScenePart> build();
+  RepeatedScene buildRepeated(uint32_t kinds);
 
  private:
   template <class Make>
@@ -63,7 +65,13 @@ class PlantBuilder {
   void addPipes(const Frame& bay, const std::string& name, const PipeBox& obstacle, GeneratorRandom& random);
   void addRack(const Frame& middle, float low, float length, const std::string& name,
                GeneratorRandom& random);
-  void addAisles(uint32_t i, uint32_t j, uint32_t storey);
+  struct Aisles {
+    bool x, z, floor;  ///< at high x, at high z; with a walkway
+  };
+  Aisles aislesOf(uint32_t i, uint32_t j, uint32_t storey) const {
+    return {i + 1 < plant_.nx, j + 1 < plant_.nz, storey > 0};
+  }
+  void addAisles(const Frame& bay, Aisles aisles, const std::string& name, GeneratorRandom random);
   void addStorageTanks();
 
   PlantLayout plant_;
@@ -181,27 +189,25 @@ void PlantBuilder::addRack(const Frame& middle, float low, float length, const s
 }
 
 /// The aisles at high x and high z of a bay, with their crossing.
-void PlantBuilder::addAisles(uint32_t i, uint32_t j, uint32_t storey) {
-  GeneratorRandom random(plant_.seed, 0xa151e, (uint64_t(storey) * 4096 + i) * 4096 + j);
-  const std::string name = std::to_string(i) + "-" + std::to_string(j) + "-" + std::to_string(storey);
-  const glm::vec3 corner(kPitch * float(i), kStorey * float(storey), kPitch * float(j));
+void PlantBuilder::addAisles(const Frame& bay, Aisles aisles, const std::string& name,
+                             GeneratorRandom random) {
+  const glm::vec3 corner = bay.origin;
   const auto floor = [&](glm::vec3 low, float width, float depth) {
-    if (storey == 0) return;
+    if (!aisles.floor) return;
     add("walkway-" + name, Frame{}.at(low),
         [=](MeshBuilder& mesh, uint32_t level) { makeGrating(mesh, width, depth, level); });
   };
-  const bool x_aisle = i + 1 < plant_.nx, z_aisle = j + 1 < plant_.nz;
-  if (x_aisle) {
+  if (aisles.x) {
     floor(corner + glm::vec3(kBay, 0, 0), kAisle, kBay);
     addRack(Frame{}.at(corner + glm::vec3(kBay + kAisle / 2, 0, 0)), kPlantFreeHeight + 0.2f, kPitch, name,
             random);
   }
-  if (z_aisle) {
+  if (aisles.z) {
     floor(corner + glm::vec3(0, 0, kBay), kBay, kAisle);
     addRack(Frame{}.at(corner + glm::vec3(0, 0, kBay + kAisle / 2), 0.25f), kPlantFreeHeight + 1.1f, kPitch,
             name, random);
   }
-  if (x_aisle && z_aisle) floor(corner + glm::vec3(kBay, 0, kBay), kAisle, kAisle);
+  if (aisles.x && aisles.z) floor(corner + glm::vec3(kBay, 0, kBay), kAisle, kAisle);
 }
 
 void PlantBuilder::addStorageTanks() {
@@ -226,7 +232,7 @@ std::vector<ScenePart> PlantBuilder::build() {
         addSteel(bay, name, storey + 1 < plant_.storeys);
         const PipeBox obstacle = addMachines(bay, name, random);
         addPipes(bay, name, obstacle, random);
-        addAisles(i, j, storey);
+        addAisles(bay, aislesOf(i, j, storey), name, {plant_.seed, 0xa151e, index});
       }
     }
   }
@@ -234,7 +240,57 @@ std::vector<ScenePart> PlantBuilder::build() {
   return std::move(parts_);
 }
 
+/// Every other bay along x is mirrored about its middle.
+RepeatedScene PlantBuilder::buildRepeated(uint32_t kinds) {
+  RepeatedScene scene;
+  addGround();
+  addStorageTanks();
+  scene.parts = std::move(parts_);
+  std::map<std::vector<uint32_t>, size_t> made;  // modules by what sets them apart
+  const auto module = [&](const std::vector<uint32_t>& key, auto&& make) -> SceneModule& {
+    const auto [entry, is_new] = made.emplace(key, scene.modules.size());
+    if (is_new) {
+      parts_.clear();
+      make();
+      scene.modules.push_back({std::move(parts_), {}});
+    }
+    return scene.modules[entry->second];
+  };
+  for (uint32_t storey = 0; storey < plant_.storeys; ++storey) {
+    for (uint32_t i = 0; i < plant_.nx; ++i) {
+      for (uint32_t j = 0; j < plant_.nz; ++j) {
+        const uint64_t index = (uint64_t(storey) * 4096 + i) * 4096 + j;
+        const uint32_t kind = GeneratorRandom(plant_.seed, 0x71d5, index).below(kinds);
+        const bool roofed = storey + 1 < plant_.storeys;
+        const std::string name = std::to_string(i) + "-" + std::to_string(j) + "-" + std::to_string(storey);
+        const glm::vec3 corner(kPitch * float(i), kStorey * float(storey), kPitch * float(j));
+        SceneModule& bay = module({0, kind, roofed}, [&] {
+          GeneratorRandom random(plant_.seed, 0xba4, kind);
+          addSteel({}, "", roofed);
+          addPipes({}, "", addMachines({}, "", random), random);
+        });
+        const bool mirrored = i % 2 == 1;
+        bay.places.push_back({"bay-" + name,
+                              {vec4(mirrored ? -1 : 1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0),
+                               vec4(corner + glm::vec3(mirrored ? kBay : 0, 0, 0), 0)}});
+        const Aisles aisles = aislesOf(i, j, storey);
+        if (!aisles.x && !aisles.z) continue;
+        SceneModule& aisle = module({1, kind, aisles.x, aisles.z, aisles.floor}, [&] {
+          addAisles({}, aisles, "", {plant_.seed, 0xa151e, kind});
+        });
+        aisle.places.push_back(
+            {"aisles-" + name, {vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0), vec4(corner, 0)}});
+      }
+    }
+  }
+  return scene;
+}
+
 }  // namespace
+
+RepeatedScene repeatedPlant(uint64_t triangles, uint64_t seed, uint32_t kinds) {
+  return PlantBuilder(drawPlant(triangles, seed)).buildRepeated(kinds);
+}
 
 std::vector<ScenePart> plantParts(uint64_t triangles, uint64_t seed) {
   return PlantBuilder(drawPlant(triangles, seed)).build();

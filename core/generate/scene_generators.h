@@ -12,9 +12,14 @@ namespace sightline {
 // which depends on count and seed only; that is how cells know where free space is.
 
 std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed);
-std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed);
+/// even: of repeatedCity, whose blocks are all of one size.
+std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed, bool even = false);
 std::vector<ScenePart> canyonParts(uint64_t triangles, uint64_t seed);
 std::vector<ViewCell> canyonCells(uint64_t triangles, uint64_t seed);
+// The scenes that can be made of few kinds of modules, repeated (bays, blocks of houses).
+RepeatedScene repeatedCity(uint64_t triangles, uint64_t seed, uint32_t kinds);
+RepeatedScene repeatedPlant(uint64_t triangles, uint64_t seed, uint32_t kinds);
+
 std::vector<ScenePart> plantParts(uint64_t triangles, uint64_t seed);
 std::vector<ViewCell> plantCells(uint64_t triangles, uint64_t seed);
 std::vector<ScenePart> bistroParts(uint64_t triangles, uint64_t seed);

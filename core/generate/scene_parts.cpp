@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/generate/generator_random.h"
+#include "core/scene/instances.h"
 
 namespace sightline {
 namespace {
@@ -18,10 +19,11 @@ struct Size {
 
 constexpr Size kNone{~uint64_t(0), ~uint64_t(0)};
 
+/// Of all copies.
 Size sizeOf(const ScenePart& part, uint32_t level) {
   MeshBuilder counter(MeshBuilder::Mode::kCount);
   part.make(counter, level);
-  return {counter.vertexCount(), counter.triangleCount()};
+  return {part.copies * counter.vertexCount(), part.copies * counter.triangleCount()};
 }
 
 /// Sizes of all parts at one level (or their highest, where that is less).
@@ -93,8 +95,14 @@ Plan planLevels(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_
 
 }  // namespace
 
-Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed) {
-  const Plan plan = planLevels(parts, triangles, seed);
+namespace {
+
+/// All parts at the levels of the plan, once each.
+Scene makeParts(const std::vector<ScenePart>& parts, Plan plan) {
+  for (size_t i = 0; i < parts.size(); ++i) {
+    plan.sizes[i].vertices /= parts[i].copies;
+    plan.sizes[i].triangles /= parts[i].copies;
+  }
   std::vector<Size> starts(parts.size() + 1);
   for (size_t i = 0; i < parts.size(); ++i) {
     starts[i + 1] = {starts[i].vertices + plan.sizes[i].vertices,
@@ -120,6 +128,58 @@ Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uin
                    scene.triangles.begin() + int64_t(starts[i].triangles),
                    [first](glm::uvec3 t) { return t + first; });
   });
+  return scene;
+}
+
+}  // namespace
+
+Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed) {
+  return makeParts(parts, planLevels(parts, triangles, seed));
+}
+
+Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed) {
+  std::vector<ScenePart>& parts = repeated.parts;
+  std::vector<size_t> ends;  // of the modules' parts
+  const size_t plain_parts = parts.size();
+  for (SceneModule& module : repeated.modules) {
+    for (ScenePart& part : module.parts) {
+      part.copies = module.places.size();
+      parts.push_back(std::move(part));
+    }
+    ends.push_back(parts.size());
+  }
+  const Plan plan = planLevels(parts, triangles, seed);
+  const auto sizeBefore = [&](size_t end) {
+    Size sum;
+    for (size_t i = 0; i < end; ++i) {
+      sum.vertices += plan.sizes[i].vertices / parts[i].copies;
+      sum.triangles += plan.sizes[i].triangles / parts[i].copies;
+    }
+    return sum;
+  };
+  Scene scene = makeParts(parts, plan);
+  Size start = sizeBefore(plain_parts);
+  std::erase_if(scene.objects, [&](const SceneObject& o) { return o.first_triangle >= start.triangles; });
+  uint64_t next_id = start.triangles;
+  for (size_t m = 0; m < ends.size(); ++m) {
+    const Size end = sizeBefore(ends[m]);
+    const auto count = uint32_t(end.triangles - start.triangles);
+    if (count != 0) {
+      for (const SceneModule::Place& place : repeated.modules[m].places) {
+        SceneInstance instance;
+        instance.mesh = uint32_t(scene.meshes.size());
+        instance.first_id = uint32_t(next_id);
+        instance.place = place.place;
+        scene.instances.push_back(instance);
+        scene.objects.push_back({place.name, uint32_t(next_id), count});
+        next_id += count;
+      }
+      scene.meshes.push_back({uint32_t(start.vertices), uint32_t(end.vertices - start.vertices),
+                              uint32_t(start.triangles), count});
+    }
+    start = end;
+  }
+  countInstances(scene);
   return scene;
 }
 

@@ -17,6 +17,23 @@ struct ScenePart {
   std::function<void(MeshBuilder&, uint32_t level)> make;
   /// The highest level that is of use.
   uint32_t max_level = 0;
+  uint64_t copies = 1;  ///< how often the scene shows it: of assembleModules
+};
+
+/// Parts that are made once, together, and shown in several places.
+struct SceneModule {
+  struct Place {
+    std::string name;
+    Placement place;
+  };
+  std::vector<ScenePart> parts;
+  std::vector<Place> places;
+};
+
+/// What makes a scene: parts, and modules as instances behind them.
+struct RepeatedScene {
+  std::vector<ScenePart> parts;
+  std::vector<SceneModule> modules;
 };
 
 /// Makes all parts, in order, at levels such that the scene has as close to `triangles` triangles as the
@@ -24,5 +41,9 @@ struct ScenePart {
 /// seed, one level higher for as long as they fit. Parts without triangles are left out.
 /// Throws Error when even level 0 is more than `triangles`.
 Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed);
+
+/// The same of a scene with modules: each of their places counts, is an object, and an instance of the scene,
+/// behind the parts.
+Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed);
 
 }  // namespace sightline

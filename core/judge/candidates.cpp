@@ -15,14 +15,29 @@ constexpr double kParallel = 1e300;
 CandidateWalk::CandidateWalk(const Bvh& bvh)
     : bvh_(bvh), reach_(glm::max(maxAbs(glm::dvec3(bvh.low)), maxAbs(glm::dvec3(bvh.high)))) {}
 
-CandidateWalk::Slabs CandidateWalk::slabs(const JudgeRay& ray, double padding) const {
+double CandidateWalk::growth(const JudgeRay& ray, double padding) const {
+  return padding + kBoxGrowth * (reach_ + maxAbs(ray.origin));
+}
+
+CandidateWalk::Slabs CandidateWalk::slabsIn(const InstanceRecord& instance, const JudgeRay& ray,
+                                            double growth) {
+  const Placement& place = instance.place;
+  const glm::dmat3 inverse =
+      glm::inverse(glm::dmat3(glm::dvec3(place.x), glm::dvec3(place.y), glm::dvec3(place.z)));
+  JudgeRay inner = ray;
+  inner.origin = inverse * (ray.origin - glm::dvec3(place.origin));
+  inner.direction = inverse * ray.direction;
+  const glm::dvec3 stretch = glm::abs(inverse[0]) + glm::abs(inverse[1]) + glm::abs(inverse[2]);
+  return slabs(inner, stretch * growth + glm::dvec3(instance.padding));
+}
+
+CandidateWalk::Slabs CandidateWalk::slabs(const JudgeRay& ray, const glm::dvec3& growth) {
   Slabs result;
-  const double growth = padding + kBoxGrowth * (reach_ + maxAbs(ray.origin));
   for (int axis = 0; axis < 3; ++axis) {
     const double d = ray.direction[axis];
     result.inverse[axis] = d == 0 ? kParallel : 1 / d;
-    result.low_shift[axis] = -growth - ray.origin[axis];
-    result.high_shift[axis] = growth - ray.origin[axis];
+    result.low_shift[axis] = -growth[axis] - ray.origin[axis];
+    result.high_shift[axis] = growth[axis] - ray.origin[axis];
   }
   return result;
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/scene/instances.h"
 
 namespace sightline {
 namespace {
@@ -39,13 +40,77 @@ size_t firstBroken(const Scene& scene) {
       [](size_t a, size_t b) { return std::min(a, b); });
 }
 
+/// That meshes lie behind what is in none, and behind each other, and use what is theirs.
+void checkMeshes(const Scene& scene) {
+  uint64_t position = scene.plainPositions(), triangle = scene.plainTriangles();
+  const auto check = [&](uint64_t first, uint64_t end, uint64_t low, uint64_t high) {
+    for (uint64_t i = first; i < end; ++i) {
+      for (int corner = 0; corner < 3; ++corner) {
+        if (scene.triangles[i][corner] >= low && scene.triangles[i][corner] < high) continue;
+        throw Error(fmt::format("stored triangle {}: vertex {} is not from {} to {}", i,
+                                scene.triangles[i][corner], low, high - 1));
+      }
+    }
+  };
+  check(0, triangle, 0, position);
+  for (const SceneMesh& mesh : scene.meshes) {
+    if (mesh.first_position != position || mesh.first_triangle != triangle || mesh.position_count == 0 ||
+        mesh.triangle_count == 0) {
+      throw Error("a mesh is empty, or does not follow the one before it");
+    }
+    position += mesh.position_count;
+    triangle += mesh.triangle_count;
+    if (position > scene.positions.size() || triangle > scene.triangles.size()) {
+      throw Error("a mesh ends behind what is stored");
+    }
+    check(mesh.first_triangle, triangle, mesh.first_position, position);
+  }
+  if (position != scene.positions.size() || triangle != scene.triangles.size()) {
+    throw Error("there are triangles or positions behind those of the last mesh");
+  }
+}
+
+/// Returns how many triangles there are in all.
+size_t checkInstances(const Scene& scene) {
+  checkMeshes(scene);
+  if (!scene.surfaces.empty()) throw Error("a scene with instances has surfaces: flatten it first");
+  std::vector<Bounds> bounds;
+  for (const SceneMesh& mesh : scene.meshes) {
+    Bounds box{scene.positions[mesh.first_position], scene.positions[mesh.first_position]};
+    for (uint32_t i = 0; i < mesh.position_count; ++i) {
+      box.low = glm::min(box.low, scene.positions[mesh.first_position + i]);
+      box.high = glm::max(box.high, scene.positions[mesh.first_position + i]);
+    }
+    bounds.push_back(box);
+  }
+  uint64_t in_meshes = 0, vertices = scene.plainPositions();
+  for (const SceneInstance& instance : scene.instances) {
+    if (instance.mesh >= scene.meshes.size() || instance.first_id < in_meshes ||
+        instance.first_id - in_meshes != instance.plain_before ||
+        instance.plain_before > scene.plainTriangles() || instance.first_vertex != vertices) {
+      throw Error("an instance is of no mesh, out of order, or was not counted (countInstances)");
+    }
+    if (!canPlace(instance.place, bounds[instance.mesh])) {
+      throw Error(fmt::format("the instance at triangle {} has a placement that cannot be traced (canPlace)",
+                              instance.first_id));
+    }
+    in_meshes += scene.meshes[instance.mesh].triangle_count;
+    vertices += scene.meshes[instance.mesh].position_count;
+  }
+  if (vertices > kMostTriangles)
+    throw Error(fmt::format("the scene has {} vertices, too many for numbers", vertices));
+  return in_meshes + scene.plainTriangles();
+}
+
 }  // namespace
 
 void checkScene(const Scene& scene) {
-  const size_t count = scene.triangles.size();
+  if (scene.triangles.empty()) throw Error("the scene has no triangles");
+  const size_t stored = scene.triangles.size();
+  const size_t count = scene.hasInstances() ? checkInstances(scene) : stored;
   if (count == 0) throw Error("the scene has no triangles");
   if (count > kMostTriangles) throw Error(fmt::format("the scene has {} triangles, too many for ids", count));
-  if (const size_t broken = firstBroken(scene); broken < count) {
+  if (const size_t broken = firstBroken(scene); broken < stored) {
     const glm::uvec3& t = scene.triangles[broken];
     throw Error(
         fmt::format("triangle {} (vertices {}, {}, {}): a vertex is not among the {} there are, is not "

@@ -28,8 +28,7 @@ struct RoundedCell {
     front = cell.flat() ? margin.z : -HUGE_VAL;
   }
 
-  bool contains(const Scene& scene, uint32_t id) const {
-    const auto t = scene.corners(id);
+  bool contains(const std::array<glm::vec3, 3>& t) const {
     const glm::dvec3 corners[3] = {frame.toLocal(glm::dvec3(t[0])), frame.toLocal(glm::dvec3(t[1])),
                                    frame.toLocal(glm::dvec3(t[2]))};
     return triangleMeetsBox(corners, half_size) &&
@@ -48,9 +47,10 @@ std::vector<uint32_t> containedTriangles(const Scene& scene, const ViewCell& cel
   const size_t count = scene.triangleCount();
   std::vector<std::vector<uint32_t>> blocks((count + kBlock - 1) / kBlock);
   tbb::parallel_for(size_t(0), blocks.size(), [&](size_t block) {
-    for (size_t i = block * kBlock; i < std::min(count, (block + 1) * kBlock); ++i) {
-      if (rounded.contains(scene, uint32_t(i))) blocks[block].push_back(uint32_t(i));
-    }
+    const auto end = uint32_t(std::min(count, (block + 1) * kBlock));
+    scene.visitTriangles(uint32_t(block * kBlock), end, [&](uint32_t id, const auto& corners) {
+      if (rounded.contains(corners)) blocks[block].push_back(id);
+    });
   });
   std::vector<uint32_t> result;
   for (const std::vector<uint32_t>& block : blocks) result.insert(result.end(), block.begin(), block.end());
@@ -66,7 +66,7 @@ std::vector<uint32_t> containedTriangles(const Scene& scene, const Bvh& bvh, con
   const glm::dvec3 slack = (glm::abs(frame.center) + reach) * kSlack;
   std::vector<uint32_t> result;
   anyInLeaves(bvh, frame.center - reach - slack, frame.center + reach + slack, [&](uint32_t id) {
-    if (rounded.contains(scene, id)) result.push_back(id);
+    if (rounded.contains(scene.corners(id))) result.push_back(id);
     return false;
   });
   std::ranges::sort(result);

@@ -44,8 +44,8 @@ class Positions {
 
   /// A corner as the file has it.
   glm::dvec3 corner(size_t triangle, int corner) const {
-    const uint32_t vertex = scene_.triangles[triangle][corner];
-    const glm::dvec3 position(scene_.positions[vertex]);
+    const uint32_t vertex = scene_.vertexNumbers(uint32_t(triangle))[corner];
+    const glm::dvec3 position(scene_.corners(uint32_t(triangle))[size_t(corner)]);
     return vertex < remainders_.size() ? position + glm::dvec3(remainders_[vertex]) : position;
   }
 
@@ -58,8 +58,8 @@ class Positions {
     Loss loss;
     if (remainders_.empty() || (!all && scene_.degenerate_triangles == 0)) return loss;
     for (size_t i = 0; i < scene_.triangleCount(); ++i) {
-      const glm::uvec3& t = scene_.triangles[i];
-      const bool flat = hasZeroArea(scene_.positions[t.x], scene_.positions[t.y], scene_.positions[t.z]);
+      const auto t = scene_.corners(uint32_t(i));
+      const bool flat = hasZeroArea(t[0], t[1], t[2]);
       if ((!flat && !all) || !hasShape(i, median_edge)) continue;
       loss.collapsed += flat ? 1 : 0;
       loss.turned += !flat && isTurned(i) ? 1 : 0;
@@ -83,8 +83,8 @@ class Positions {
 
   bool isTurned(size_t triangle) const {
     constexpr double kCosine = 0.8660254037844386;  // of 30 degrees
-    const glm::uvec3& t = scene_.triangles[triangle];
-    const glm::dvec3 now = normal(scene_.positions[t.x], scene_.positions[t.y], scene_.positions[t.z]);
+    const auto t = scene_.corners(uint32_t(triangle));
+    const glm::dvec3 now = normal(t[0], t[1], t[2]);
     const glm::dvec3 was = normal(triangle);
     return glm::dot(now, was) < kCosine * glm::length(now) * glm::length(was);
   }

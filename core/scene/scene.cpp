@@ -8,27 +8,110 @@
 #include <bit>
 #include <limits>
 #include <memory>
+#include <new>
+
+#define SL_INSTANCES_PARAM const Scene& scene
+#define SL_INSTANCE_IDS(k) instanceIds(scene, k)
+namespace sightline {
+namespace {
+
+uvec4 instanceIds(const Scene& scene, uint32_t k) {
+  const SceneInstance& instance = scene.instances[k];
+  const SceneMesh& mesh = scene.meshes[instance.mesh];
+  return {instance.first_id, mesh.triangle_count, instance.plain_before, mesh.first_triangle};
+}
+
+}  // namespace
+}  // namespace sightline
+#include "core/shared/find_triangle.inl"
 
 namespace sightline {
+namespace {
+
+/// Triangles or positions that are hashed at a time where they must be made first.
+constexpr size_t kHashPiece = 1 << 14;
+
+/// XXH3 of a sequence of arrays.
+class Hasher {
+ public:
+  Hasher() : state_(XXH3_createState(), XXH3_freeState) {
+    if (state_ == nullptr) throw std::bad_alloc();
+    XXH3_64bits_reset(state_.get());
+  }
+
+  template <typename T>
+  void add(const T* values, size_t count) {
+    XXH3_64bits_update(state_.get(), values, count * sizeof(T));
+  }
+
+  /// What make(i) returns for i = 0 .. count - 1.
+  template <typename Make>
+  void addMade(uint64_t count, Make&& make) {
+    std::vector<decltype(make(uint64_t(0)))> piece;
+    for (uint64_t first = 0; first < count; first += kHashPiece) {
+      piece.clear();
+      for (uint64_t i = first; i < std::min(count, first + kHashPiece); ++i) piece.push_back(make(i));
+      add(piece.data(), piece.size());
+    }
+  }
+
+  uint64_t digest() const { return XXH3_64bits_digest(state_.get()); }
+
+ private:
+  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
+};
+
+}  // namespace
+
+StoredTriangle Scene::stored(uint32_t id) const {
+  return findTriangle(*this, static_cast<uint32_t>(instances.size()), id);
+}
+
+uint32_t Scene::runEnd(uint32_t id, StoredTriangle at) const {
+  if (at.instance != kNoTriangle) {
+    return instances[at.instance].first_id + meshes[instances[at.instance].mesh].triangle_count;
+  }
+  const auto next =
+      std::upper_bound(instances.begin(), instances.end(), id,
+                       [](uint32_t value, const SceneInstance& i) { return value < i.first_id; });
+  return next == instances.end() ? triangleCount() : next->first_id;
+}
+
+glm::uvec3 Scene::vertexNumbers(uint32_t id) const {
+  if (!hasInstances()) return triangles[id];
+  const StoredTriangle at = stored(id);
+  glm::uvec3 numbers = triangles[at.triangle];
+  if (at.instance == kNoTriangle) return numbers;
+  const SceneInstance& instance = instances[at.instance];
+  if (instance.mirrors) std::swap(numbers.y, numbers.z);
+  return numbers - meshes[instance.mesh].first_position + static_cast<uint32_t>(instance.first_vertex);
+}
 
 uint64_t hashScene(const Scene& scene) {
   static_assert(std::endian::native == std::endian::little, "the hash is of little-endian bytes");
   static_assert(sizeof(glm::vec3) == 12 && sizeof(glm::uvec3) == 12);
-  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state(XXH3_createState(),
-                                                                              XXH3_freeState);
-  if (state == nullptr) throw std::bad_alloc();
-  const std::array<uint64_t, 2> counts = {scene.positions.size(), scene.triangles.size()};
-  XXH3_64bits_reset(state.get());
-  XXH3_64bits_update(state.get(), counts.data(), sizeof(counts));
-  XXH3_64bits_update(state.get(), scene.positions.data(), scene.positions.size() * sizeof(glm::vec3));
-  XXH3_64bits_update(state.get(), scene.triangles.data(), scene.triangles.size() * sizeof(glm::uvec3));
+  const std::array<uint64_t, 2> counts = {scene.vertexCount(), scene.triangleCount()};
+  Hasher hasher;
+  hasher.add(counts.data(), counts.size());
+  hasher.add(scene.positions.data(), scene.plainPositions());
+  for (const SceneInstance& instance : scene.instances) {
+    const SceneMesh& mesh = scene.meshes[instance.mesh];
+    hasher.addMade(mesh.position_count, [&](uint64_t i) {
+      return placeVertex(instance.place, scene.positions[mesh.first_position + i]);
+    });
+  }
+  if (!scene.hasInstances()) {
+    hasher.add(scene.triangles.data(), scene.triangles.size());
+  } else {
+    hasher.addMade(scene.triangleCount(), [&](uint64_t i) { return scene.vertexNumbers(uint32_t(i)); });
+  }
   if (scene.offset != glm::dvec3(0.0)) {
-    XXH3_64bits_update(state.get(), &scene.offset, sizeof(scene.offset));
+    hasher.add(&scene.offset, 1);
   }
   const auto add = [&](const auto& list) {
     const uint64_t size = list.size();
-    XXH3_64bits_update(state.get(), &size, sizeof(size));
-    XXH3_64bits_update(state.get(), list.data(), size * sizeof(list[0]));
+    hasher.add(&size, 1);
+    hasher.add(list.data(), list.size());
   };
   if (const Surfaces& surfaces = scene.surfaces; !surfaces.empty()) {
     add(surfaces.words);
@@ -36,7 +119,7 @@ uint64_t hashScene(const Scene& scene) {
     add(surfaces.masks);
     add(surfaces.texels);
   }
-  return XXH3_64bits_digest(state.get());
+  return hasher.digest();
 }
 
 Bounds sceneBounds(const Scene& scene) {
@@ -46,12 +129,12 @@ Bounds sceneBounds(const Scene& scene) {
   return tbb::parallel_reduce(
       tbb::blocked_range<uint32_t>(0, scene.triangleCount(), 1 << 16), nothing,
       [&](const tbb::blocked_range<uint32_t>& range, Bounds bounds) {
-        for (uint32_t i = range.begin(); i != range.end(); ++i) {
-          for (const glm::vec3& position : scene.corners(i)) {
+        scene.visitTriangles(range.begin(), range.end(), [&](uint32_t, const auto& corners) {
+          for (const glm::vec3& position : corners) {
             bounds.low = glm::min(bounds.low, position);
             bounds.high = glm::max(bounds.high, position);
           }
-        }
+        });
         return bounds;
       },
       [](const Bounds& a, const Bounds& b) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -8,6 +9,7 @@
 
 #include "core/base/extents.h"
 #include "core/scene/surfaces.h"
+#include "core/shared/placement.h"
 
 namespace sightline {
 
@@ -35,14 +37,43 @@ struct SceneObject {
                                       ///< order (without those that --repair dropped)
 };
 
-/// A static scene: nothing but triangles. A triangle's id is its index in `triangles`, which follows file
-/// order over all meshes and instances. Invariants (kept by loadScene and the generators): at least one
-/// triangle, fewer than 2^32 - 2; every index is in range; every coordinate is at most
-/// kLargestCoordinate in magnitude; the objects' ranges
-/// are ascending, disjoint and cover all triangles.
+/// Triangles that a scene holds once and shows in many places, with vertices of their own: runs of
+/// Scene::positions and Scene::triangles, neither empty.
+struct SceneMesh {
+  uint32_t first_position = 0, position_count = 0;
+  uint32_t first_triangle = 0, triangle_count = 0;
+};
+
+/// A mesh in a place. Its triangles' ids follow each other from first_id on.
+struct SceneInstance {
+  uint32_t mesh = 0;  ///< in Scene::meshes
+  uint32_t first_id = 0;
+  Placement place{};
+  // Of countInstances (core/scene/instances.h):
+  uint32_t plain_before = 0;  ///< triangles in no mesh with lower ids
+  uint64_t first_vertex = 0;  ///< number of its first vertex (Scene::vertexNumbers)
+  bool mirrors = false;       ///< the placement turns fronts to backs: two corners change places
+};
+
+/// A static scene: nothing but triangles. A triangle's id follows file order over all meshes and instances.
+///
+/// A plain scene (no instances, as most are) holds each triangle where it is: ids are indices of `triangles`.
+/// A scene with instances holds what is used more than once in `meshes`, in the mesh's own space, behind the
+/// plain triangles. It stands for the plain scene that flatten() (core/scene/instances.h) makes of it: all
+/// that is said of ids, corners, counts, bounds and the hash is the same for both, bit for bit. So are sets
+/// on devices that trace by core/shared (DeviceInfo::exact).
+///
+/// Invariants (kept by loadScene and the generators): at least one triangle, fewer than 2^32 - 2; every index
+/// is in range; every coordinate is at most kLargestCoordinate in magnitude; the objects' ranges are
+/// ascending, disjoint and cover all triangles; meshes follow the plain triangles and positions, and each
+/// other, without a gap; instances are ascending in first_id and do not overlap; each placement passes
+/// canPlace; a scene with instances has no surfaces.
 struct Scene {
-  std::vector<glm::vec3> positions;   ///< world space, y up by custom; units are the file's
-  std::vector<glm::uvec3> triangles;  ///< indices into positions
+  std::vector<glm::vec3>
+      positions;  ///< world space (of meshes: their own), y up by custom; units are the file's
+  std::vector<glm::uvec3> triangles;  ///< indices into positions; a mesh's are into its own run
+  std::vector<SceneMesh> meshes;
+  std::vector<SceneInstance> instances;
   std::vector<SceneObject> objects;
   std::vector<uint32_t>
       faces;          ///< of OBJ and PLY, if loading was asked for them, else empty: the face in its
@@ -64,22 +95,75 @@ struct Scene {
   std::vector<std::string> warnings;    ///< a line each: what else of the file is not in the scene, or only
                                         ///< roughly
 
-  uint32_t triangleCount() const { return static_cast<uint32_t>(triangles.size()); }
-  uint64_t vertexCount() const { return positions.size(); }
+  bool hasInstances() const { return !instances.empty(); }
+
+  /// Triangles and positions that are in no mesh.
+  uint32_t plainTriangles() const {
+    return meshes.empty() ? static_cast<uint32_t>(triangles.size()) : meshes.front().first_triangle;
+  }
+  uint32_t plainPositions() const {
+    return meshes.empty() ? static_cast<uint32_t>(positions.size()) : meshes.front().first_position;
+  }
+
+  /// Of all ids, whatever is stored once.
+  uint32_t triangleCount() const {
+    if (!hasInstances()) return static_cast<uint32_t>(triangles.size());
+    const SceneInstance& last = instances.back();
+    return last.first_id + meshes[last.mesh].triangle_count + plainTriangles() - last.plain_before;
+  }
+  uint64_t vertexCount() const {
+    if (!hasInstances()) return positions.size();
+    return instances.back().first_vertex + meshes[instances.back().mesh].position_count;
+  }
 
   /// Where triangle `id` is, in world space. Whoever only asks where triangles are asks here, not in
   /// `triangles`.
   std::array<glm::vec3, 3> corners(uint32_t id) const {
-    const glm::uvec3& t = triangles[id];
-    return {positions[t.x], positions[t.y], positions[t.z]};
+    return hasInstances() ? cornersOf(stored(id)) : storedCorners(id);
   }
 
   /// Its vertices' numbers, 0 .. vertexCount() - 1: triangles that share one have the same number for it.
-  glm::uvec3 vertexNumbers(uint32_t id) const { return triangles[id]; }
+  glm::uvec3 vertexNumbers(uint32_t id) const;
+
+  /// Where the triangle's corners are stored: what is kept for each stored triangle is found so.
+  StoredTriangle stored(uint32_t id) const;
+
+  /// The corners of a stored triangle where an instance, by its index, has them.
+  std::array<glm::vec3, 3> cornersOf(StoredTriangle stored) const {
+    const auto t = storedCorners(stored.triangle);
+    if (stored.instance == kNoTriangle) return t;
+    const SceneInstance& instance = instances[stored.instance];
+    const Corners placed =
+        placeCorners(instance.place, instance.mirrors ? kInstanceMirrors : 0, t[0], t[1], t[2]);
+    return {placed.a, placed.b, placed.c};
+  }
+
+  /// Calls visit(id, corners) for the ids from begin to end - 1: faster than to ask for each.
+  template <typename Visit>
+  void visitTriangles(uint32_t begin, uint32_t end, Visit&& visit) const {
+    if (!hasInstances()) {
+      for (uint32_t id = begin; id < end; ++id) visit(id, storedCorners(id));
+      return;
+    }
+    while (begin < end) {
+      StoredTriangle at = stored(begin);
+      for (const uint32_t stop = std::min(end, runEnd(begin, at)); begin < stop; ++begin, ++at.triangle) {
+        visit(begin, cornersOf(at));
+      }
+    }
+  }
+
+ private:
+  std::array<glm::vec3, 3> storedCorners(uint32_t triangle) const {
+    const glm::uvec3& t = triangles[triangle];
+    return {positions[t.x], positions[t.y], positions[t.z]};
+  }
+  /// The first id that is not stored next to the others from `id` on.
+  uint32_t runEnd(uint32_t id, StoredTriangle at) const;
 };
 
-/// Hash of positions and triangles, and of surfaces and offset where there are any (XXH3, 64 bit): what a PVS
-/// depends on.
+/// Hash of positions and triangles, and of surfaces and offset where there are any (XXH3, 64 bit): what a PVS depends
+/// on. Of a scene with instances that of the plain scene it stands for.
 uint64_t hashScene(const Scene& scene);
 
 /// Axis-aligned bounds of the vertices that triangles use.

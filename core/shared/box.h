@@ -46,22 +46,28 @@ SL_FUNC float boundedSlope(float component, float smallest) {
   return fabs(component) < smallest ? (component < 0.0f ? -smallest : smallest) : component;
 }
 
-/// The direction must not be zero.
-SL_FUNC BoxRay boxRay(Ray ray, float scene_reach) {
+/// Boxes grow by the padding on each side. The direction must not be zero.
+SL_FUNC BoxRay paddedBoxRay(Ray ray, vec3 padding) {
   vec4 o = ray.origin;
   vec4 d = ray.direction;
-  float padding = kBoxPadding * (max(fabs(o.x), max(fabs(o.y), fabs(o.z))) + scene_reach);
   float smallest = kSmallestSlope * max(fabs(d.x), max(fabs(d.y), fabs(d.z)));
   float x = slDivide(1.0f, boundedSlope(d.x, smallest));
   float y = slDivide(1.0f, boundedSlope(d.y, smallest));
   float z = slDivide(1.0f, boundedSlope(d.z, smallest));
   vec4 middle = vec4(-o.x * x, -o.y * y, -o.z * z, 0.0f);
-  vec4 spread = vec4(padding * fabs(x), padding * fabs(y), padding * fabs(z), 0.0f);
+  vec4 spread = vec4(padding.x * fabs(x), padding.y * fabs(y), padding.z * fabs(z), 0.0f);
   BoxRay result;
   result.inverse = vec4(x, y, z, 0.0f);
   result.near_addend = middle - spread;
   result.far_addend = middle + spread;
   return result;
+}
+
+/// The direction must not be zero.
+SL_FUNC BoxRay boxRay(Ray ray, float scene_reach) {
+  vec4 o = ray.origin;
+  float padding = kBoxPadding * (max(fabs(o.x), max(fabs(o.y), fabs(o.z))) + scene_reach);
+  return paddedBoxRay(ray, vec3(padding, padding, padding));
 }
 
 /// x: where the ray enters the box, at least 0; y: where it leaves. It meets the box if x <= y, and may then

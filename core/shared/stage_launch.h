@@ -11,7 +11,7 @@ SL_NAMESPACE_BEGIN
 /// X(type, name) for each of the buffers, in the order in which kernels and shaders get them.
 #define SL_STAGE_BUFFERS(X)                                                                     \
   X(Face, faces)    /* of the view cell */                                                      \
-  X(uint, place_of) /* triangle id -> where its corners are: a record, a leaf */                \
+  X(uint, place_of) /* stored triangle (plain: its id) -> its record or leaf */                 \
   X(uint, keys)     /* the set (set.h) ... */                                                   \
   X(uint, winner)                                                                               \
   X(uint, fresh)                                                                                \

@@ -1,11 +1,10 @@
 #include "core/strip/lost_rays.h"
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <tuple>
 
 #include "core/sampling/numbered_rays.h"
@@ -24,10 +23,18 @@ std::array<glm::vec3, 3> sorted(std::array<glm::vec3, 3> corners) {
   return corners;
 }
 
-bool isLost(const Scene& original, const Hit& before, const Scene& stripped, const Hit& after) {
-  if (before.triangle == kNoTriangle) return false;
-  if (after.triangle == kNoTriangle) return true;
-  return sorted(original.corners(before.triangle)) != sorted(stripped.corners(after.triangle));
+/// Whether the rays' first hits are the same, or nothing in both scenes.
+bool isSame(const Scene& original, const Hit& before, const Scene& stripped, const Hit& after) {
+  if (before.triangle == kNoTriangle) return after.triangle == kNoTriangle;
+  if (after.triangle == kNoTriangle) return false;
+  return sorted(original.corners(before.triangle)) == sorted(stripped.corners(after.triangle));
+}
+
+bool holds(const Scene& scene, const std::array<glm::vec3, 3>& corners) {
+  for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
+    if (sorted(scene.corners(id)) == corners) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -52,29 +59,30 @@ uint64_t markSeen(const TracedScene& scene, const ViewCell& cell, uint32_t cell_
   return marked;
 }
 
-uint64_t countLostRays(const TracedScene& original, const TracedScene& stripped, const ViewCell& cell,
+LostRays countLostRays(const TracedScene& original, const TracedScene& stripped, const ViewCell& cell,
                        uint32_t cell_index, uint64_t seed, uint32_t& rays, const RayProgress& progress) {
   const NumberedRays numbered(cellFaces(cell), haltonShifts(seed, cell_index, RandomUse::kChecking), rays);
   std::vector<Ray> batch(std::min(rays, kLostChunk));
   std::vector<Hit> before(batch.size()), after(batch.size());
-  uint64_t lost = 0;
+  std::map<uint32_t, bool> known;  // whether the other scene has a triangle of the original
+  LostRays result;
   for (uint32_t first = 0; first < rays; first += kLostChunk) {
     const uint32_t count = std::min(rays - first, kLostChunk);
     tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });
     original.tracer.traceRays(std::span(batch).first(count), std::span(before).first(count));
     stripped.tracer.traceRays(std::span(batch).first(count), std::span(after).first(count));
-    lost += tbb::parallel_reduce(
-        tbb::blocked_range<uint32_t>(0, count, 1 << 14), uint64_t(0),
-        [&](const tbb::blocked_range<uint32_t>& range, uint64_t sum) {
-          for (uint32_t i = range.begin(); i != range.end(); ++i) {
-            sum += isLost(original.scene, before[i], stripped.scene, after[i]) ? 1 : 0;
-          }
-          return sum;
-        },
-        std::plus<>());
+    for (uint32_t i = 0; i < count; ++i) {
+      if (isSame(original.scene, before[i], stripped.scene, after[i])) continue;
+      const uint32_t id = before[i].triangle;
+      const auto [entry, is_new] = known.try_emplace(id, true);
+      if (is_new && id != kNoTriangle) {
+        entry->second = holds(stripped.scene, sorted(original.scene.corners(id)));
+      }
+      ++(entry->second ? result.ties : result.lost);
+    }
     if (progress && !progress(first + uint64_t(count))) rays = first + count;
   }
-  return lost;
+  return result;
 }
 
 }  // namespace sightline

@@ -24,10 +24,16 @@ using RayProgress = std::function<bool(uint64_t rays)>;
 uint64_t markSeen(const TracedScene& scene, const ViewCell& cell, uint32_t cell_index, uint64_t seed,
                   uint32_t rays, std::vector<bool>& seen, const RayProgress& progress = {});
 
-/// Of `rays` random rays of the cell, others again: how many meet first, in the original scene, a triangle
-/// that is not what they meet first in the other one: none there, or one with other corners. Where progress
-/// ends it early, `rays` becomes what was traced. rays: 1 .. 2^30. Throws Error.
-uint64_t countLostRays(const TracedScene& original, const TracedScene& stripped, const ViewCell& cell,
+struct LostRays {
+  uint64_t lost = 0;  ///< meet first, in the original scene, a triangle that the other one does not have
+  uint64_t ties = 0;  ///< meet first one that it has, but there another: as near, up to rounding, which the
+                      ///< order of a triangle's corners decides
+};
+
+/// Traces `rays` (1 .. 2^30) random rays of the cell, others again, in both scenes. A triangle is the same if
+/// its corners are, in whichever order. Where progress ends it early, `rays` becomes what was traced. Throws
+/// Error.
+LostRays countLostRays(const TracedScene& original, const TracedScene& stripped, const ViewCell& cell,
                        uint32_t cell_index, uint64_t seed, uint32_t& rays, const RayProgress& progress = {});
 
 }  // namespace sightline

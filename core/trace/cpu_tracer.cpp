@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/shared/box.h"
+#include "core/shared/placement.h"
 #include "core/shared/ray.h"
 #include "core/shared/surface.h"
 #include "core/shared/triangle.h"
@@ -77,6 +78,37 @@ inline void considerSurface(const uint32_t* surfaces, uint32_t place, const Shea
   }
 }
 
+/// Walks a tree of 8-wide nodes; calls leaf(first, count) for the leaves that may hold a hit nearer than or
+/// as near as best, which shrinks with the hits.
+template <typename Leaf>
+inline void walkTree(const BvhNode8* nodes, uint32_t root, const BoxRay& ray, const Hit& best, Leaf&& leaf) {
+  const PlaneOffsets rows = planeOffsets(ray);
+  StackEntry stack[kStackSize];
+  uint32_t size = 0;
+  stack[size++] = {root, 0, 0};
+  while (size > 0) {
+    const StackEntry entry = stack[--size];
+    if (entry.near_t > best.t) continue;
+    if (entry.count > 0) {
+      leaf(entry.child, entry.count);
+      continue;
+    }
+    const BvhNode8& node = nodes[entry.child];
+    Children children;
+    intersectChildren(node, ray, rows, best.t, children);
+    const uint32_t bottom = size;
+    for (int i = 0; i < 8; ++i) {
+      // An empty slot is met by rays whose 1 / direction leaves the floats (core/shared/box.h).
+      if (!(children.near_t[i] <= children.far_t[i]) || node.child[i] == kNoChild) continue;
+      uint32_t place = size++;  // the farthest deepest in the stack
+      for (; place > bottom && stack[place - 1].near_t < children.near_t[i]; --place) {
+        stack[place] = stack[place - 1];
+      }
+      stack[place] = {node.child[i], node.count[i], children.near_t[i]};
+    }
+  }
+}
+
 }  // namespace
 
 CpuTracer::CpuTracer(const Scene& scene, const Bvh& bvh) : bvh_(bvh), triangles_(bvh.references.size()) {
@@ -114,16 +146,10 @@ Hit CpuTracer::walk(const Ray& ray, [[maybe_unused]] std::vector<Hit>* glass) co
   if (!hasDirection(ray)) return best;
   // A ray with a NaN or an infinity in it would sort its boxes into no order; it hits nothing.
   if (!std::isfinite(dot3(xyz3(ray.origin), vec3(1)) + dot3(xyz3(ray.direction), vec3(1)))) return best;
-  const BoxRay box_ray = boxRay(ray, scene_reach_);
+  if (bvh_.hasInstances()) return traceInstances(ray);
   const ShearedRay sheared = shearRay(ray);
-  const PlaneOffsets rows = planeOffsets(box_ray);
-  StackEntry stack[kStackSize];
-  uint32_t size = 0;
-  stack[size++] = {0, 0, 0};
-  while (size > 0) {
-    const StackEntry entry = stack[--size];
-    if (entry.near_t > best.t) continue;
-    for (uint32_t i = entry.child; i < entry.child + entry.count; ++i) {
+  walkTree(bvh_.nodes8.data(), 0, boxRay(ray, scene_reach_), best, [&](uint32_t first, uint32_t count) {
+    for (uint32_t i = first; i < first + count; ++i) {
       const float* v = triangles_[i].vertices;
       const float t = intersectTriangle(sheared, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]});
       if constexpr (kSurfaces) {
@@ -132,21 +158,31 @@ Hit CpuTracer::walk(const Ray& ray, [[maybe_unused]] std::vector<Hit>* glass) co
         keepNearer(t, triangles_[i].id, best);
       }
     }
-    if (entry.count > 0) continue;
-    const BvhNode8& node = bvh_.nodes8[entry.child];
-    Children children;
-    intersectChildren(node, box_ray, rows, best.t, children);
-    const uint32_t bottom = size;
-    for (int i = 0; i < 8; ++i) {
-      // An empty slot is met by rays whose 1 / direction leaves the floats (core/shared/box.h).
-      if (!(children.near_t[i] <= children.far_t[i]) || node.child[i] == kNoChild) continue;
-      uint32_t place = size++;  // the farthest deepest in the stack
-      for (; place > bottom && stack[place - 1].near_t < children.near_t[i]; --place) {
-        stack[place] = stack[place - 1];
-      }
-      stack[place] = {node.child[i], node.count[i], children.near_t[i]};
+  });
+  return best;
+}
+
+Hit CpuTracer::traceInstances(const Ray& ray) const {
+  Hit best{INFINITY, kNoTriangle};
+  const ShearedRay sheared = shearRay(ray);
+  const BoxRay world = boxRay(ray, scene_reach_);
+  walkTree(bvh_.nodes8.data(), bvh_.top8, world, best, [&](uint32_t first, uint32_t count) {
+    for (uint32_t place = first; place < first + count; ++place) {
+      const InstanceRecord& instance = bvh_.instances[bvh_.instance_order[place]];
+      const bool in_place = (instance.roots.z & kInstanceInPlace) != 0;
+      const Ray local = in_place ? ray : localRay(instance, ray);
+      if (!hasDirection(local)) continue;
+      const BoxRay boxes = in_place ? world : instanceBoxRay(instance, ray, local, scene_reach_);
+      walkTree(bvh_.nodes8.data(), instance.roots.y, boxes, best, [&](uint32_t begin, uint32_t triangles) {
+        for (uint32_t i = begin; i < begin + triangles; ++i) {
+          const float* v = triangles_[i].vertices;
+          Corners t = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}};
+          if (!in_place) t = placeCorners(instance.place, instance.roots.z, t.a, t.b, t.c);
+          keepNearer(intersectTriangle(sheared, t.a, t.b, t.c), instance.ids.x + triangles_[i].id, best);
+        }
+      });
     }
-  }
+  });
   return best;
 }
 

@@ -16,7 +16,7 @@ class CpuTracer {
   /// too deep to trace.
   CpuTracer(const Scene& scene, const Bvh& bvh);
 
-  /// The same from triangles already packed, in the order of bvh.references.
+  /// The same from triangles already packed, in the order of bvh.references. One level only.
   CpuTracer(std::vector<TriangleRecord> triangles, const Bvh& bvh);
 
   /// Smallest t, among equal t the lowest id, of what ends the ray (Tracer::traceRays). A direction of zero
@@ -40,6 +40,8 @@ class CpuTracer {
  private:
   template <bool kSurfaces>
   Hit walk(const Ray& ray, std::vector<Hit>* glass) const;
+
+  Hit traceInstances(const Ray& ray) const;
 
   const Bvh& bvh_;
   std::vector<TriangleRecord> triangles_;

@@ -40,20 +40,29 @@ void cutBelow(const Bvh& bvh, uint32_t node, uint32_t limit, std::vector<Referen
 }  // namespace
 
 LeafParts splitIntoParts(const Bvh& bvh, uint32_t triangle_count, uint32_t limit) {
-  std::vector<ReferenceRange> ranges;
-  cutBelow(bvh, 0, std::max(limit, 8u), ranges);
+  std::vector<uint32_t> roots{0};
+  if (bvh.hasInstances()) {
+    roots.clear();
+    for (const InstanceRecord& instance : bvh.instances) roots.push_back(instance.roots.x);
+    std::ranges::sort(roots);
+    roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  }
   LeafParts result;
   result.ids.reserve(triangle_count);
   std::vector<bool> seen(triangle_count, false);
-  for (const ReferenceRange& range : ranges) {
-    const auto first = static_cast<uint32_t>(result.ids.size());
-    for (uint32_t i = range.begin; i < range.end; ++i) {
-      const uint32_t id = bvh.references[i];
-      if (!seen[id]) result.ids.push_back(id);
-      seen[id] = true;
+  for (const uint32_t root : roots) {
+    std::vector<ReferenceRange> ranges;
+    cutBelow(bvh, root, std::max(limit, 8u), ranges);
+    for (const ReferenceRange& range : ranges) {
+      const auto first = static_cast<uint32_t>(result.ids.size());
+      for (uint32_t i = range.begin; i < range.end; ++i) {
+        const uint32_t id = bvh.references[i];
+        if (!seen[id]) result.ids.push_back(id);
+        seen[id] = true;
+      }
+      const auto count = static_cast<uint32_t>(result.ids.size()) - first;
+      if (count > 0) result.parts.push_back({first, count, true, root});
     }
-    const auto count = static_cast<uint32_t>(result.ids.size()) - first;
-    if (count > 0) result.parts.push_back({first, count});
   }
   return result;
 }

@@ -3,9 +3,21 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 #include "core/base/error.h"
 
 namespace sightline {
+
+uint32_t recordId(const Scene& scene, const Bvh& bvh, uint32_t reference) {
+  if (!scene.hasInstances()) return reference;
+  if (reference < scene.plainTriangles()) return bvh.plainId(reference);
+  const auto after =
+      std::upper_bound(scene.meshes.begin(), scene.meshes.end(), reference,
+                       [](uint32_t value, const SceneMesh& mesh) { return value < mesh.first_triangle; });
+  return reference - (after - 1)->first_triangle;
+}
+
 namespace {
 
 void pack(const std::array<glm::vec3, 3>& vertices, uint32_t id, TriangleRecord& record) {
@@ -24,8 +36,8 @@ void pack(const std::array<glm::vec3, 3>& vertices, uint32_t id, TriangleRecordG
 template <typename Record>
 void packAll(const Scene& scene, const Bvh& bvh, size_t first, std::span<Record> out) {
   tbb::parallel_for(size_t{0}, out.size(), [&](size_t i) {
-    const uint32_t id = bvh.references[first + i];
-    pack(scene.corners(id), id, out[i]);
+    const uint32_t reference = bvh.references[first + i];
+    pack(scene.cornersOf({reference, kNoTriangle}), recordId(scene, bvh, reference), out[i]);
   });
 }
 

@@ -151,10 +151,11 @@ class TreeBuilder {
   VulkanBuffer scratch_;
 };
 
-/// In place, seen from both sides.
-VkAccelerationStructureInstanceKHR instanceOf(const VulkanStructure& part, uint32_t number) {
+/// Seen from both sides.
+VkAccelerationStructureInstanceKHR instanceOf(const VulkanStructure& part, const VkTransformMatrixKHR& place,
+                                              uint32_t number) {
   VkAccelerationStructureInstanceKHR instance{};
-  for (int i = 0; i < 3; ++i) instance.transform.matrix[i][i] = 1;
+  instance.transform = place;
   instance.instanceCustomIndex = number & 0xffffffu;
   instance.mask = 0xff;
   instance.flags = VK_GEOMETRY_INSTANCE_TRIANGLE_FACING_CULL_DISABLE_BIT_KHR;
@@ -179,7 +180,7 @@ uint32_t largestPart(const VulkanContext& context, uint32_t triangles) {
 }
 
 VulkanTree buildVulkanTree(const VulkanContext& context, const VulkanBuffer& corners,
-                           const std::vector<LeafPart>& parts) {
+                           const std::vector<LeafPart>& parts, const std::vector<PlacedPart>& placed) {
   const auto start = std::chrono::steady_clock::now();
   VulkanTree tree;
   TreeBuilder builder(context);
@@ -191,7 +192,10 @@ VulkanTree buildVulkanTree(const VulkanContext& context, const VulkanBuffer& cor
         builder.build(VK_ACCELERATION_STRUCTURE_TYPE_BOTTOM_LEVEL_KHR, geometry, part.count);
     tree.parts.push_back(builder.compact(std::move(loose)));
     tree.bytes += tree.parts.back().memory.bytes();
-    instances.push_back(instanceOf(tree.parts.back(), static_cast<uint32_t>(instances.size())));
+  }
+  for (const PlacedPart& part : placed) {
+    instances.push_back(
+        instanceOf(tree.parts[part.part], part.place, static_cast<uint32_t>(instances.size())));
   }
   const uint64_t instance_bytes = instances.size() * sizeof instances.front();
   const VulkanBuffer staging = context.buffer(instance_bytes, "instances", VulkanMemory::kUpload);

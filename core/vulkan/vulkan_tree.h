@@ -11,8 +11,17 @@ struct VulkanStructure {
   VkDeviceAddress address = 0;
 };
 
+/// A part in a place.
+struct PlacedPart {
+  uint32_t part = 0;
+  VkTransformMatrixKHR place = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+};
+
+/// Most placed parts: their numbers have 24 bits.
+inline constexpr uint64_t kMostPlacedParts = 1u << 24;
+
 /// The driver's acceleration structures over a scene: one bottom level a part, compacted, and one instance of
-/// each in the top level, whose custom index is the number of its part.
+/// each placed part in the top level, whose custom index is its number.
 struct VulkanTree {
   std::vector<VulkanStructure> parts;
   VulkanStructure top;
@@ -25,8 +34,9 @@ struct VulkanTree {
 /// many as `triangles` would not fit one allocation.
 uint32_t largestPart(const VulkanContext& context, uint32_t triangles);
 
-/// corners: nine floats a triangle, in leaf order; must be on the device.
+/// corners: nine floats a triangle, in leaf order; must be on the device. placed: at least one, kMostPlacedParts
+/// at most.
 VulkanTree buildVulkanTree(const VulkanContext& context, const VulkanBuffer& corners,
-                           const std::vector<LeafPart>& parts);
+                           const std::vector<LeafPart>& parts, const std::vector<PlacedPart>& placed);
 
 }  // namespace sightline

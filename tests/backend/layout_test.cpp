@@ -138,6 +138,14 @@ std::vector<Layout> sharedLayouts() {
                  sizeof(TriangleRecordGpu),
                  {SL_FIELD("vec4", v0), SL_FIELD("vec4", v1), SL_FIELD("vec4", v2)}});
 #undef SL_OF
+#define SL_OF InstanceRecord
+  all.push_back({"InstanceRecord",
+                 sizeof(InstanceRecord),
+                 {SL_FIELD("vec4", place.x), SL_FIELD("vec4", place.y), SL_FIELD("vec4", place.z),
+                  SL_FIELD("vec4", place.origin), SL_FIELD("vec4", local_x), SL_FIELD("vec4", local_y),
+                  SL_FIELD("vec4", local_z), SL_FIELD("vec4", padding), SL_FIELD("uvec4", ids),
+                  SL_FIELD("uvec4", roots)}});
+#undef SL_OF
   all.push_back({"StageLaunch", sizeof(StageLaunch), launchFields("")});
   return all;
 }
@@ -152,13 +160,15 @@ Layout vulkanLayout() {
 #undef SL_BUFFER_FIELD
 #define SL_OF VulkanLaunch
 #define SL_ADDRESS(field) launch.fields.push_back(SL_FIELD("uint64", field))
-  SL_ADDRESS(tlas), SL_ADDRESS(part_starts), SL_ADDRESS(leaf_ids), SL_ADDRESS(corners), SL_ADDRESS(hemicube);
-  SL_ADDRESS(hemicubes), SL_ADDRESS(chunk_bounds), SL_ADDRESS(draws), SL_ADDRESS(raster_leaves);
+  SL_ADDRESS(tlas), SL_ADDRESS(part_starts), SL_ADDRESS(part_ids), SL_ADDRESS(instances),
+      SL_ADDRESS(leaf_ids);
+  SL_ADDRESS(corners), SL_ADDRESS(surfaces), SL_ADDRESS(hemicube), SL_ADDRESS(hemicubes),
+      SL_ADDRESS(chunk_bounds), SL_ADDRESS(draws), SL_ADDRESS(raster_leaves);
 #undef SL_ADDRESS
 #define SL_WORD(field) launch.fields.push_back(SL_FIELD("uint", field))
   SL_WORD(raster_resolution), SL_WORD(raster_first), SL_WORD(chunk_count), SL_WORD(triangle_count);
+  SL_WORD(instance_count);
   launch.fields.push_back(SL_FIELD("float", raster_near));
-  SL_WORD(unused);
 #undef SL_WORD
 #undef SL_OF
   return launch;
@@ -211,7 +221,7 @@ void expectWritten(const std::vector<uint32_t>& words, const Layout& layout) {
 /// Headers that the structs come from.
 const char* const kIncludes =
     "#include \"core/shared/border.h\"\n#include \"core/shared/bvh_node.h\"\n#include "
-    "\"core/shared/reverse.h\"\n"
+    "\"core/shared/placement.h\"\n#include \"core/shared/reverse.h\"\n"
     "#include \"core/shared/stage_launch.h\"\n#include \"core/shared/view_ray.h\"\n";
 
 TEST(OpenClLayout, KernelsWriteFieldsWhereCppHasThem) {

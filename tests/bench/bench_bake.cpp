@@ -15,7 +15,7 @@
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
 #include "core/gvs/bake_cell.h"
-#include "core/scene/scene.h"
+#include "core/scene/scene_tree.h"
 #include "tests/bench/bench_main.h"
 #include "tests/bench/timed_device.h"
 
@@ -73,9 +73,9 @@ void print(const std::string& cell, const Run& run) {
 void bench(const Options& options) {
   const Scene scene = loadScene(options.scene);
   const std::vector<ViewCell> cells = loadCells(options.cells);
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles, {.spatial_splits = options.spatial_splits});
+  const Bvh bvh = buildSceneTree(scene, {.spatial_splits = options.spatial_splits});
   const auto device = makeDevice(options.device, scene, bvh);
-  fmt::print("{} ({}), {} triangles\n", device->info().id, device->info().name, scene.triangles.size());
+  fmt::print("{} ({}), {} triangles\n", device->info().id, device->info().name, scene.triangleCount());
   bakeOnce(*device, scene, cells.at(0), 0, options);
   for (uint32_t i = 0; i < cells.size(); ++i) {
     std::vector<Run> runs;

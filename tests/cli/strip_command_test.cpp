@@ -78,6 +78,16 @@ TEST(StripCommand, TakesCellsOrABakeOfThem) {
             {"a.pvs"});
 }
 
+TEST(StripCommand, KeepsWhatOpenDoorsShow) {
+  const BoxInBox files;
+  const std::string scene = files / "a.glb", pvs = files / "a.pvs";
+  expectRun("bake " + scene + " --cells " + (files / "cells.json") + " -o " + pvs +
+                " --doors core --device cpu --n-rand 100k --validation-rays 0",
+            0, {});
+  expectRun("strip " + scene + " -o " + (files / "b.glb") + " --from " + pvs + kQuick, 0,
+            {": 24 of 24 triangles"});  // the core as a door shows its other sides
+}
+
 TEST(StripCommand, SaysWhatIsWrong) {
   const BoxInBox files;
   const std::string scene = files / "a.glb";

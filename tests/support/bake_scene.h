@@ -4,6 +4,7 @@
 
 #include "core/device/registry/make_device.h"
 #include "core/gvs/bake_cell.h"
+#include "core/scene/scene_tree.h"
 
 namespace sightline::testing_support {
 
@@ -19,7 +20,7 @@ inline BakeParams quickParams() {
 inline CellPvs bakeOn(const std::string& device, const Scene& scene, const ViewCell& cell,
                       const BakeParams& params = quickParams(), const DeviceOptions& options = {},
                       const BvhConfig& tree = {}) {
-  const Bvh bvh = buildBvh(scene.positions, scene.triangles, tree);
+  const Bvh bvh = buildSceneTree(scene, tree);
   return bakeCell(*makeDevice(device, scene, bvh, options), scene, cell, 0, params);
 }
 

@@ -243,7 +243,7 @@ class CpuDevice final : public Device {
   /// Tree and triangles.
   uint64_t residentBytes() const {
     return tracer_.memoryBytes() + bvh_.nodes2.size() * sizeof(BvhNode2) +
-           bvh_.nodes8.size() * sizeof(BvhNode8);
+           bvh_.nodes8.size() * sizeof(BvhNode8) + bvh_.instances.size() * sizeof(InstanceRecord);
   }
 
   static size_t threadCount(const DeviceOptions& options) {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/scene/instances.h"
 #include "core/shared/ray.h"
 
 namespace sightline {
@@ -83,11 +84,14 @@ void filterHit(const RTCFilterFunctionNArguments* arguments) {
 
 class EmbreeTracer final : public Tracer {
  public:
+  /// Scenes with instances are written out.
   explicit EmbreeTracer(const Scene& scene)
       : library_(rtcNewDevice(nullptr)), scene_(rtcNewScene(library_.get())), surfaces_(scene.surfaces) {
     const EmbreeGeometry mesh(rtcNewGeometry(library_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
-    copy(mesh.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, scene.positions);
-    copy(mesh.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, scene.triangles);
+    const Scene written = scene.hasInstances() ? flatten(scene) : Scene();
+    const Scene& plain = scene.hasInstances() ? written : scene;
+    copy(mesh.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, plain.positions);
+    copy(mesh.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, plain.triangles);
     rtcSetGeometryIntersectFilterFunction(mesh.get(), filterHit);
     rtcCommitGeometry(mesh.get());
     rtcAttachGeometry(scene_.get(), mesh.get());

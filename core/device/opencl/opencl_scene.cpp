@@ -47,6 +47,10 @@ std::string kernelOptions(uint32_t rays_per_item, const SurfaceFeatures& feature
          (features.any() ? " -DSL_HAS_SURFACES=1" : "") + (features.glass ? " -DSL_HAS_GLASS=1" : "");
 }
 
+std::string kernelOptionsFor(const Bvh& bvh) {
+  return bvh.hasInstances() ? "-DSL_INSTANCES=1" : "";
+}
+
 void buildKernels(OpenClContext& context, uint32_t rays_per_item, const SurfaceFeatures& features,
                   const std::string& extra) {
   context.build(kProgramSource, kernelOptions(rays_per_item, features) + " " + extra);
@@ -69,6 +73,17 @@ OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& b
     result.surfaces = context.buffer(surfaces.size() * 4, "surfaces of the scene");
     context.write(result.surfaces, surfaces.data(), surfaces.size() * 4);
   }
+  if (!bvh.hasInstances()) return result;
+  const auto upload = [&](const auto& values, const char* what) {
+    const uint64_t bytes = values.size() * sizeof values.front();
+    ClBuffer buffer = context.buffer(bytes, what);
+    context.write(buffer, values.data(), bytes);
+    return buffer;
+  };
+  result.instances = upload(bvh.instances, "instances");
+  result.instance_order = upload(bvh.instance_order, "order of the instances");
+  result.instance_count = static_cast<uint32_t>(scene.instances.size());
+  result.root = bvh.top2;
   return result;
 }
 

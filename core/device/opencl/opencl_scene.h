@@ -8,13 +8,17 @@
 namespace sightline {
 
 /// A scene and its tree on an OpenCL device: the 2-wide tree, and triangles as packets of eight rays or as
-/// single rays read them fastest. Kernels with SL_SCENE_ARGS take the values in order, surfaces only where
-/// there are any: launchOnScene.
+/// single rays read them fastest. Kernels with SL_SCENE_ARGS take the values in order, surfaces and instances
+/// only where there are any: launchOnScene. A scene has not both.
 struct OpenClScene {
   ClBuffer nodes;
   ClBuffer triangles;
   ClBuffer surfaces;  ///< packSurfaces; without memory where all triangles are opaque from both sides
   float reach = 0;    ///< sceneReach of the bounds
+  // Of a tree of two levels; else empty.
+  ClBuffer instances, instance_order;
+  uint32_t instance_count = 0;  ///< without what is in no mesh
+  uint32_t root = 0;            ///< of the upper level
 };
 
 /// Rays that a work item traces where the device is fastest: packets of 8 on CPUs, 1 elsewhere.
@@ -24,8 +28,11 @@ uint32_t raysPerItem(const OpenClContext& context);
 /// surfaces.
 std::string kernelOptions(uint32_t rays_per_item, const SurfaceFeatures& features = {});
 
+/// The further options that kernels need to trace a tree of two levels; none for others.
+std::string kernelOptionsFor(const Bvh& bvh);
+
 /// Builds our kernels (cl_kernels/program.cl) to trace so many rays a work item, 8 or 1, in scenes with
-/// these surfaces. extra: further options of the compiler. Throws Error.
+/// these surfaces. extra: further options of the compiler (kernelOptionsFor). Throws Error.
 void buildKernels(OpenClContext& context, uint32_t rays_per_item, const SurfaceFeatures& features = {},
                   const std::string& extra = {});
 
@@ -39,7 +46,10 @@ OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& b
 template <typename... Arguments>
 void launchOnScene(OpenClContext& context, const ClKernel& kernel, uint64_t items, uint32_t local,
                    const OpenClScene& scene, const Arguments&... arguments) {
-  if (scene.surfaces.get() == nullptr) {
+  if (scene.instance_count > 0) {
+    context.launch(kernel, items, local, scene.nodes, scene.triangles, scene.reach, scene.instances,
+                   scene.instance_order, scene.instance_count, scene.root, arguments...);
+  } else if (scene.surfaces.get() == nullptr) {
     context.launch(kernel, items, local, scene.nodes, scene.triangles, scene.reach, arguments...);
   } else {
     context.launch(kernel, items, local, scene.nodes, scene.triangles, scene.reach, scene.surfaces,

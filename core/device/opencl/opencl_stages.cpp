@@ -29,7 +29,7 @@ OpenClStages::OpenClStages(const std::string& selector, const Scene& scene, cons
                            const DeviceOptions& options)
     : context_(selector), lanes_(options.rays_per_item > 0 ? options.rays_per_item : raysPerItem(context_)) {
   if (options.memory_budget_bytes > 0) context_.limitMemory(options.memory_budget_bytes);
-  buildKernels(context_, lanes_, featuresOf(scene.surfaces));
+  buildKernels(context_, lanes_, featuresOf(scene.surfaces), kernelOptionsFor(bvh));
   // Groups of 64 rays keep the cores of a CPU evenly busy and fill the smallest unit of a GPU.
   local_ = options.work_group_size > 0 ? options.work_group_size : std::max(1u, 64 / lanes_);
   for (uint32_t i = 0; i < kGpuStages; ++i) {
@@ -40,7 +40,7 @@ OpenClStages::OpenClStages(const std::string& selector, const Scene& scene, cons
   dummy_ = context_.buffer(0, "dummy");
   for (uint32_t i = 0; i < kStageBuffers; ++i) bind(StageBuffer(i), dummy_);
 
-  std::vector<uint32_t> record_of(scene.triangleCount(), 0);
+  std::vector<uint32_t> record_of(scene.triangles.size(), 0);
   for (size_t i = bvh.references.size(); i-- > 0;) record_of[bvh.references[i]] = static_cast<uint32_t>(i);
   record_of_ = context_.buffer(record_of.size() * 4, "index of triangles");
   context_.write(record_of_, record_of.data(), record_of.size() * 4);

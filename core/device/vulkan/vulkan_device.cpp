@@ -26,6 +26,9 @@ class VulkanDevice final : public GpuSampler<VulkanStages>, private HemicubeDraw
 
   void rasterize(std::span<const ViewFrame> hemicube, uint32_t resolution, float near_distance) override {
     VulkanRunner& runner = api().runner();
+    if (runner.launch.instance_count > 0) {
+      throw Error("hemicubes are drawn of plain scenes: --flatten writes out this scene's instances");
+    }
     if (!raster_ || raster_->resolution() != resolution) {
       runner.commands.finish();
       raster_.reset();

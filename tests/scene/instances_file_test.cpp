@@ -1,0 +1,206 @@
+// Instances in files: what several nodes of a glTF show is stored once where that pays, and stands for the
+// same scene; what is saved with instances comes back with them.
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <random>
+
+#include "core/formats/save_scene.h"
+#include "core/generate/generate.h"
+#include "core/scene/check_scene.h"
+#include "core/scene/instances.h"
+#include "tests/scene/files.h"
+#include "tests/scene/gltf_files.h"
+#include "tests/support/instanced_scene.h"
+
+namespace sightline {
+namespace {
+
+using test::bytesOf;
+using test::Folder;
+using test::GltfFile;
+using test::json;
+using testing_support::TestRandom;
+
+constexpr uint32_t kTriangles = 4000;
+
+/// Nodes that show a mesh of 4,000 triangles, turned, scaled, sheared and mirrored, below a parent that does
+/// so too; before, between and behind them nodes with a mesh of their own.
+GltfFile forest(uint32_t nodes, uint64_t seed = 1) {
+  TestRandom random(seed);
+  GltfFile file;
+  const Scene tree = testing_support::randomMesh(random, kTriangles, 1.0f);
+  const auto addMesh = [&](const Scene& mesh) {
+    const size_t positions = file.addPositions(mesh.positions);
+    const size_t indices =
+        file.addAccessor(file.addView(bytesOf(mesh.triangles)), 5125, mesh.triangles.size() * 3, "SCALAR");
+    file.addMesh(positions, int64_t(indices));
+  };
+  addMesh(tree);
+  addMesh(testing_support::randomMesh(random, 10, 1.0f));
+  json list = json::array();
+  json children = json::array();
+  for (uint32_t i = 0; i < nodes; ++i) {
+    if (i == nodes / 2) {
+      children.push_back(list.size());
+      list.push_back({{"mesh", 1}, {"name", "rock"}, {"translation", {3, 2, 1}}});
+    }
+    const Placement place = testing_support::randomPlacement(random, 50);
+    json matrix = json::array();
+    for (const vec4* column : {&place.x, &place.y, &place.z, &place.origin}) {
+      for (int row = 0; row < 3; ++row) matrix.push_back((*column)[row]);
+      matrix.push_back(column == &place.origin ? 1 : 0);
+    }
+    children.push_back(list.size());
+    list.push_back({{"mesh", 0}, {"name", "tree " + std::to_string(i)}, {"matrix", matrix}});
+  }
+  list.push_back({{"children", children}, {"scale", {1, -1.5, 2}}, {"rotation", {0.6, 0, 0, 0.8}}});
+  file.document["nodes"] = list;
+  file.document["scenes"] = {{{"nodes", {list.size() - 1}}}};
+  file.document["scene"] = 0;
+  return file;
+}
+
+bool sameBits(const glm::vec3& a, const glm::vec3& b) {
+  for (int i = 0; i < 3; ++i) {
+    if (std::bit_cast<uint32_t>(a[i]) != std::bit_cast<uint32_t>(b[i])) return false;
+  }
+  return true;
+}
+
+void expectSameScene(const Scene& a, const Scene& b) {
+  ASSERT_EQ(a.triangleCount(), b.triangleCount());
+  EXPECT_EQ(a.vertexCount(), b.vertexCount());
+  EXPECT_EQ(hashScene(a), hashScene(b));
+  EXPECT_EQ(a.degenerate_triangles, b.degenerate_triangles);
+  EXPECT_EQ(a.single_sided_triangles, b.single_sided_triangles);
+  ASSERT_EQ(a.objects.size(), b.objects.size());
+  for (size_t i = 0; i < a.objects.size(); ++i) {
+    EXPECT_EQ(a.objects[i].name, b.objects[i].name);
+    EXPECT_EQ(a.objects[i].first_triangle, b.objects[i].first_triangle);
+    EXPECT_EQ(a.objects[i].triangle_count, b.objects[i].triangle_count);
+  }
+  for (uint32_t id = 0; id < a.triangleCount(); id += 997) {
+    for (size_t c = 0; c < 3; ++c) ASSERT_TRUE(sameBits(a.corners(id)[c], b.corners(id)[c])) << id;
+  }
+}
+
+Scene load(const GltfFile& file, bool flatten) {
+  const Folder folder;
+  return loadScene(folder.write("forest.glb", file.glb()), {.flatten = flatten});
+}
+
+TEST(InstancesInFiles, AreStoredOnceWhereThatPays) {
+  const GltfFile file = forest(300);
+  const Scene scene = load(file, false), flat = load(file, true);
+  ASSERT_TRUE(scene.hasInstances());
+  checkScene(scene);
+  EXPECT_EQ(scene.instances.size(), 300u);
+  EXPECT_EQ(scene.meshes.size(), 1u);
+  EXPECT_EQ(scene.triangles.size(), kTriangles + 10);
+  EXPECT_FALSE(flat.hasInstances());
+  EXPECT_EQ(flat.triangles.size(), 300 * kTriangles + 10);
+  expectSameScene(scene, flat);
+  EXPECT_EQ(scene.objects[150].name, "rock");
+  EXPECT_EQ(scene.objects[150].first_triangle, 150 * kTriangles);
+}
+
+/// The same vertices, to a few units in the last place, and the same corners' order as by the nodes' matrices
+/// in double.
+TEST(InstancesInFiles, StandWhereTheirNodesPutThem) {
+  const GltfFile file = forest(300);
+  const Scene scene = load(file, false);
+  GltfFile single = file;
+  for (const uint32_t node : {0u, 7u, 120u}) {
+    // Alone, the mesh is no instance.
+    json kept = file.document["nodes"];
+    const json children = kept.back()["children"];
+    kept.back()["children"] = {children[node < 150 ? node : node + 1]};
+    single.document["nodes"] = kept;
+    single.document["scenes"] = {{{"nodes", {kept.size() - 1}}}};
+    const Scene plain = load(single, false);
+    ASSERT_FALSE(plain.hasInstances());
+    ASSERT_EQ(plain.triangleCount(), kTriangles);
+    for (uint32_t i = 0; i < kTriangles; ++i) {
+      const auto got = scene.corners(node * kTriangles + i), wanted = plain.corners(i);
+      for (size_t c = 0; c < 3; ++c) {
+        ASSERT_LT(glm::length(glm::dvec3(got[c]) - glm::dvec3(wanted[c])), 200 * 0x1p-21) << node << " " << i;
+      }
+    }
+  }
+}
+
+TEST(InstancesInFiles, AreWrittenOutWhereThatDoesNotPay) {
+  EXPECT_FALSE(load(forest(2), false).hasInstances());
+  EXPECT_FALSE(load(forest(200), false).hasInstances()) << "less than 2^20 triangles";
+}
+
+/// Nodes that squeeze the mesh flat, or put it on the spot in spite of a far place, are written out; others
+/// stay instances, in one scene, in the order of the file.
+TEST(InstancesInFiles, WhatCannotBePlacedIsPlain) {
+  GltfFile file = forest(300);
+  file.document["nodes"][5]["matrix"] = {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  const Scene scene = load(file, false);
+  ASSERT_TRUE(scene.hasInstances());
+  checkScene(scene);
+  EXPECT_EQ(scene.instances.size(), 299u);
+  EXPECT_EQ(scene.plainTriangles(), kTriangles + 10);
+  EXPECT_EQ(scene.degenerate_triangles, load(file, true).degenerate_triangles);
+  expectSameScene(scene, load(file, true));
+}
+
+TEST(InstancesInFiles, NotWhereOneSeesThrough) {
+  GltfFile file = forest(300);
+  file.document["materials"] = {{{"alphaMode", "BLEND"}}};
+  file.document["meshes"][1]["primitives"][0]["material"] = 0;
+  EXPECT_FALSE(load(file, false).hasInstances());
+}
+
+TEST(InstancesInFiles, RepairDropsInEachPlace) {
+  GltfFile file = forest(300);
+  // The last triangle's corner is out of range.
+  const size_t accessor = file.document["meshes"][0]["primitives"][0]["indices"];
+  const size_t view = file.document["accessors"][accessor]["bufferView"];
+  const size_t begin = file.document["bufferViews"][view].value("byteOffset", 0);
+  for (int i = 0; i < 4; ++i) file.bin[begin + (kTriangles * 3 - 1) * 4 + size_t(i)] = '\x7f';
+  const Folder folder;
+  const std::filesystem::path path = folder.write("forest.glb", file.glb());
+  EXPECT_THROW(loadScene(path), Error);
+  const Scene scene = loadScene(path, {.repair = true});
+  EXPECT_EQ(scene.repaired_triangles, 300u);
+  ASSERT_TRUE(scene.hasInstances());
+  EXPECT_EQ(scene.triangleCount(), 300 * (kTriangles - 1) + 10);
+  expectSameScene(scene, loadScene(path, {.repair = true, .flatten = true}));
+}
+
+TEST(InstancesInFiles, ComeBackFromAGlb) {
+  for (const char* name : {"plant", "city"}) {
+    const Scene scene = generateRepeated(name, 3'000'000, 3, 2);
+    checkScene(scene);
+    ASSERT_TRUE(scene.hasInstances()) << name;
+    EXPECT_LE(scene.triangleCount(), 3'000'000u) << name;
+    EXPECT_GE(scene.triangleCount(), 2'900'000u) << name;
+    const Folder folder;
+    const std::filesystem::path path = folder / "repeated.glb";
+    saveScene(scene, path);
+    const Scene loaded = loadScene(path), flat = loadScene(path, {.flatten = true});
+    EXPECT_EQ(loaded.hasInstances(), std::string(name) == "plant") << "a city's streets do not repeat";
+    ASSERT_EQ(loaded.triangleCount(), scene.triangleCount());
+    if (std::string(name) == "plant") {
+      expectSameScene(loaded, flat);
+      expectSameScene(loaded, flatten(scene));
+    }
+  }
+}
+
+TEST(InstancesInFiles, RepeatedScenesAreTheSameEveryTime) {
+  const Scene a = generateRepeated("plant", 200'000, 3, 2), b = generateRepeated("plant", 200'000, 3, 2);
+  EXPECT_EQ(hashScene(a), hashScene(b));
+  EXPECT_NE(hashScene(a), hashScene(generateRepeated("plant", 200'000, 4, 2)));
+  EXPECT_THROW(generateRepeated("bistro", 200'000, 3, 2), Error);
+  EXPECT_THROW(generateRepeated("plant", 200'000, 3, 0), Error);
+  EXPECT_TRUE(std::ranges::any_of(a.instances, [](const SceneInstance& i) { return i.mirrors; }));
+}
+
+}  // namespace
+}  // namespace sightline
