@@ -9,7 +9,7 @@
 #include "core/cell/cell_problem.h"
 #include "core/device/registry/device_names.h"
 #include "core/gvs/algorithm_revision.h"
-#include "core/gvs/leaks.h"
+#include "core/gvs/find_leaks.h"
 #include "core/scene/seen_through.h"
 
 namespace sightline {
@@ -22,6 +22,13 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
   const glm::dvec3& offset = session.scene().offset;
   std::vector<ViewCell> planned = moved({cells.begin(), cells.end()}, -offset);
   if (const auto problem = cellProblem(planned)) throw Error(problem->text(), kExitUsage);
+  const bool draws = params.method == Method::kRaster;
+  if (draws && !(content.doors.empty() && session.options().see_through.empty())) {
+    throw Error(
+        "doors and objects to see through are glass, which the method raster does not draw: use another "
+        "method",
+        kExitUsage);
+  }
   PvsFile inputs;
   inputs.algorithm = kAlgorithmRevision;
   inputs.intersector = intersectorOf(device);

@@ -127,7 +127,14 @@ class CellBake {
     state_.testing = true;
     const uint64_t before = bound.rays();
     const bool reached = bound.test(
-        [&](std::span<const Ray> rays, std::span<Hit> hits) { device_.traceRays(rays, hits); }, member,
+        [&](std::span<const Ray> rays, std::span<Hit> hits) {
+          device_.traceRays(rays, hits);
+          // A ray that sees glass outside the set misses, whatever it ends on.
+          for (const SeenThrough& seen : device_.traceGlass(rays, hits)) {
+            if (member[seen.triangle] == 0) hits[seen.ray].triangle = seen.triangle;
+          }
+        },
+        member,
         [&](uint64_t left) {
           state_.stats.bound_rays = bound.rays();
           state_.test_left = left;

@@ -26,9 +26,18 @@ Classifier::Classifier(std::span<const RankedSet> sets, uint32_t views, uint32_t
 }
 
 void Classifier::classify(uint32_t first, std::span<const uint32_t> images) {
+  classifyViews(first, images, sets_);
+}
+
+void Classifier::classify(uint32_t first, std::span<const uint32_t> images, size_t set) {
+  classifyViews(first, images, std::span(sets_).subspan(set, 1));
+}
+
+void Classifier::classifyViews(uint32_t first, std::span<const uint32_t> images, std::span<Set> sets) {
   const size_t pixels = size_t(resolution_) * resolution_;
-  tbb::parallel_for(size_t(0), images.size() / pixels,
-                    [&](size_t i) { classifyView(first + uint32_t(i), images.subspan(i * pixels, pixels)); });
+  tbb::parallel_for(size_t(0), images.size() / pixels, [&](size_t i) {
+    classifyView(first + uint32_t(i), images.subspan(i * pixels, pixels), sets);
+  });
 }
 
 std::span<const ImageError> Classifier::errors(size_t set, uint32_t view) const {
@@ -61,12 +70,12 @@ void Classifier::splitImage(std::span<const uint32_t> image, Scratch& scratch) c
   }
 }
 
-void Classifier::classifyView(uint32_t view, std::span<const uint32_t> image) {
+void Classifier::classifyView(uint32_t view, std::span<const uint32_t> image, std::span<Set> sets) {
   Scratch& scratch = scratch_.local();
   splitImage(image, scratch);
   ImageError nothing;  // of a set of nothing: the same for all sets
   if (!scratch.runs.empty()) scratch.regions.count(scratch.runs, std::span(&nothing, 1));
-  for (Set& set : sets_) {
+  for (Set& set : sets) {
     const auto errors = std::span(set.errors).subspan(view * set.prefixes, set.prefixes);  // zeros
     std::fill_n(errors.begin(), set.empty, nothing);
     scratch.runs.clear();

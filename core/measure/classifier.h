@@ -19,6 +19,9 @@ class Classifier {
   /// Images (Tracer::traceViews) of the views from `first` on, as many as `images` holds.
   void classify(uint32_t first, std::span<const uint32_t> images);
 
+  /// The same for one of the sets alone: where a pixel shows several triangles, sets differ in which matters.
+  void classify(uint32_t first, std::span<const uint32_t> images, size_t set);
+
   /// Error of one view, of each prefix of a set.
   std::span<const ImageError> errors(size_t set, uint32_t view) const;
 
@@ -40,7 +43,8 @@ class Classifier {
     std::vector<ImageError> errors;  ///< view by view, of each all prefixes
   };
 
-  void classifyView(uint32_t view, std::span<const uint32_t> image);
+  void classifyViews(uint32_t first, std::span<const uint32_t> images, std::span<Set> sets);
+  void classifyView(uint32_t view, std::span<const uint32_t> image, std::span<Set> sets);
   void splitImage(std::span<const uint32_t> image, Scratch& scratch) const;
   void addRun(std::vector<PixelRun>& runs, const PixelRun& run) const;
 

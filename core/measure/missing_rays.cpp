@@ -32,10 +32,19 @@ std::vector<std::vector<uint64_t>> countMissingRays(Tracer& tracer, const ViewCe
   for (uint32_t first = 0; first < rays; first += kChunk) {
     const uint32_t count = std::min(rays - first, kChunk);
     tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });
-    tracer.traceRays(std::span(batch).first(count), std::span(hits).first(count));
+    const auto traced = std::span(batch).first(count);
+    tracer.traceRays(traced, std::span(hits).first(count));
+    const std::vector<SeenThrough> glass = tracer.traceGlass(traced, std::span(hits).first(count));
     tbb::parallel_for(size_t(0), sets.size(), [&](size_t s) {
+      auto through = glass.begin();
       for (uint32_t i = 0; i < count; ++i) {
-        if (hits[i].triangle != kNoTriangle) ++by_level[s][levels[s][hits[i].triangle]];
+        // A ray is missed by the prefixes that miss anything that it sees.
+        uint16_t level = hits[i].triangle == kNoTriangle ? uint16_t(0) : levels[s][hits[i].triangle];
+        const bool sees = hits[i].triangle != kNoTriangle || (through != glass.end() && through->ray == i);
+        for (; through != glass.end() && through->ray == i; ++through) {
+          level = std::max(level, levels[s][through->triangle]);
+        }
+        if (sees) ++by_level[s][level];
       }
     });
   }

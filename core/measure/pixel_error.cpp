@@ -1,6 +1,7 @@
 #include "core/measure/pixel_error.h"
 
 #include <fmt/core.h>
+#include <tbb/parallel_for.h>
 #include <tbb/task_group.h>
 
 #include <algorithm>
@@ -19,6 +20,8 @@ namespace {
 /// Pixels of the first launch, and how long one should take: progress and Ctrl-C, on slow devices too.
 constexpr uint64_t kFirstPixels = 1u << 18;
 constexpr double kLaunchSeconds = 0.25;
+/// Pixels of a launch where there is glass: their rays travel.
+constexpr uint64_t kGlassPixels = 1u << 20;
 
 using Clock = std::chrono::steady_clock;
 
@@ -57,6 +60,43 @@ void traceAndClassify(Tracer& tracer, std::span<const ViewFrame> frames, uint32_
     throw;
   }
   classification.wait();
+}
+
+/// The same where there is glass: a pixel shows all that its ray sees, and is wrong where a set lacks any of
+/// it.
+void traceAndClassifyGlass(Tracer& tracer, std::span<const ViewFrame> frames, std::span<const RankedSet> sets,
+                           uint32_t resolution, Classifier& classifier, const MeasureCallback& progress,
+                           const std::atomic<bool>* stop) {
+  const auto start = Clock::now();
+  const size_t pixels = size_t(resolution) * resolution, most = std::max<size_t>(1, kGlassPixels / pixels);
+  std::vector<std::vector<uint16_t>> levels;
+  for (const RankedSet& set : sets) levels.push_back(missingLevels(set));
+  std::vector<Ray> rays;
+  std::vector<Hit> hits;
+  std::vector<uint32_t> image;
+  for (size_t done = 0; done < frames.size();) {
+    if (stop && *stop) throw Interrupted{};
+    const size_t count = std::min(most, frames.size() - done);
+    rays.resize(count * pixels);
+    hits.resize(rays.size());
+    tbb::parallel_for(size_t(0), rays.size(), [&](size_t i) {
+      const auto pixel = uint32_t(i % pixels);
+      rays[i] = viewRay(frames[done + i / pixels], pixel % resolution, pixel / resolution, resolution);
+    });
+    tracer.traceRays(rays, hits);
+    const std::vector<SeenThrough> glass = tracer.traceGlass(rays, hits);
+    image.resize(rays.size());
+    for (size_t s = 0; s < sets.size(); ++s) {
+      for (size_t i = 0; i < image.size(); ++i) image[i] = hits[i].triangle;
+      for (const SeenThrough& seen : glass) {
+        uint32_t& shown = image[seen.ray];
+        if (shown == kNoTriangle || levels[s][seen.triangle] > levels[s][shown]) shown = seen.triangle;
+      }
+      classifier.classify(uint32_t(done), image, s);
+    }
+    done += count;
+    if (progress) progress({uint32_t(done), uint32_t(frames.size()), done * pixels, secondsSince(start)});
+  }
 }
 
 SetError summarizeSet(const Classifier& classifier, size_t set, size_t prefixes,
@@ -110,7 +150,11 @@ std::vector<SetError> measureCell(Tracer& tracer, const ViewCell& cell, uint32_t
   Classifier classifier(sets, options.views, options.resolution);
   const std::vector<ViewFrame> frames =
       measureViews(cell, cell_index, options.views, options.seed, options.fov);
-  traceAndClassify(tracer, frames, options.resolution, classifier, progress, stop);
+  if (tracer.hasGlass()) {
+    traceAndClassifyGlass(tracer, frames, sets, options.resolution, classifier, progress, stop);
+  } else {
+    traceAndClassify(tracer, frames, options.resolution, classifier, progress, stop);
+  }
   for (size_t s = 0; s < sets.size(); ++s) {
     errors.push_back(summarizeSet(classifier, s, sets[s].prefixes.size(), options));
   }

@@ -1,13 +1,16 @@
 #include "core/scene/seen_through.h"
 
+#include <utility>
+
 #include "core/scene/instances.h"
 
 namespace sightline {
 
 Scene seenThrough(Scene scene, std::span<const NamedTriangles> glass) {
   if (glass.empty()) return scene;
+  scene = flatten(std::move(scene));  // glass is of single triangles, not of meshes
   scene = flatten(std::move(scene));  // surfaces are kept for each triangle
-  scene.surfaces.words.resize(scene.triangles.size(), 0);
+  scene.surfaces.words.resize(scene.triangleCount(), 0);
   for (const NamedTriangles& range : glass) {
     for (uint32_t id = range.first; id - range.first < range.count; ++id) {
       scene.surfaces.words[id] |= kSurfaceGlass;

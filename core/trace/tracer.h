@@ -30,6 +30,9 @@ class Tracer {
   /// only a front. hits.size() == rays.size().
   virtual void traceRays(std::span<const Ray> rays, std::span<Hit> hits) = 0;
 
+  /// Whether the scene has glass: whether traceGlass may give anything.
+  virtual bool hasGlass() const = 0;
+
   /// The glass that each ray meets no farther away than its hit (hits: as of traceRays): ascending by ray and
   /// triangle, each once. Empty where the scene has no glass.
   virtual std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) = 0;

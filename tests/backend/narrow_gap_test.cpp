@@ -9,7 +9,7 @@
 #include "core/bake/bake.h"
 #include "core/device/naive/naive_device.h"
 #include "core/device/registry/make_device.h"
-#include "core/gvs/leaks.h"
+#include "core/gvs/find_leaks.h"
 #include "core/scene/find_objects.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/leaky_room.h"

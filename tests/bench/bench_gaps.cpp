@@ -8,7 +8,7 @@
 #include "core/device/naive/naive_device.h"
 #include "core/device/registry/make_device.h"
 #include "core/gvs/bake_cell.h"
-#include "core/gvs/leaks.h"
+#include "core/gvs/find_leaks.h"
 #include "tests/bench/bench_main.h"
 #include "tests/support/leaky_room.h"
 #include "tests/support/make_cell.h"

@@ -57,6 +57,7 @@ class TimedDevice final : public Device {
     return timed("read", [&] { return inner_.readPvs(); });
   }
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override { inner_.traceRays(rays, hits); }
+  bool hasGlass() const override { return inner_.hasGlass(); }
   std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
     return inner_.traceGlass(rays, hits);
   }

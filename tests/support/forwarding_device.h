@@ -31,6 +31,7 @@ class ForwardingDevice : public Device {
   DeviceCounters counters() override { return device_->counters(); }
   std::vector<PvsEntry> readPvs() override { return device_->readPvs(); }
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override { device_->traceRays(rays, hits); }
+  bool hasGlass() const override { return device_->hasGlass(); }
   std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
     return device_->traceGlass(rays, hits);
   }

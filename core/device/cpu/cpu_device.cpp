@@ -196,6 +196,8 @@ class CpuDevice final : public Device {
     });
   }
 
+  bool hasGlass() const override { return tracer_.features().glass; }
+
   std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
     std::vector<SeenThrough> seen;
     if (!tracer_.features().glass) return seen;

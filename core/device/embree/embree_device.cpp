@@ -111,6 +111,8 @@ class EmbreeTracer final : public Tracer {
     check("trace");
   }
 
+  bool hasGlass() const override { return featuresOf(surfaces_).glass; }
+
   std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
     std::vector<SeenThrough> seen;
     if (!featuresOf(surfaces_).glass) return seen;

@@ -160,6 +160,8 @@ class GpuSampler : public Device {
     }
   }
 
+  bool hasGlass() const override { return has_glass_; }
+
   std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
     std::vector<SeenThrough> seen;
     for (size_t first = 0; has_glass_ && first < rays.size(); first += kRayChunk) {

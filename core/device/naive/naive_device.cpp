@@ -135,6 +135,7 @@ class NaiveDevice final : public Device {
   std::vector<PvsEntry> readPvs() override { return entries_; }
 
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits) override { inner_->traceRays(rays, hits); }
+  bool hasGlass() const override { return inner_->hasGlass(); }
   std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
     return inner_->traceGlass(rays, hits);
   }

@@ -1,4 +1,4 @@
-#include "core/gvs/leaks.h"
+#include "core/gvs/find_leaks.h"
 
 #include <algorithm>
 #include <chrono>
