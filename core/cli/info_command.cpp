@@ -62,7 +62,6 @@ bool looksLikeMillimetres(const glm::dvec3& extent, double median_edge) {
 /// Where the scene lies, in its file's coordinates, and how large it and its detail are.
 void showSize(const Scene& scene) {
   const Bounds bounds = sceneBounds(scene);
-  const Bounds bounds = sceneBounds(scene);
   const glm::dvec3 extent = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);
   const double median_edge = medianEdge(scene);
   if (scene.offset == glm::dvec3(0.0)) {
