@@ -11,7 +11,7 @@ readonly build="$root/build"
 # what only the tests and bench_trace use.
 readonly packages=(
   cmake g++ ninja-build pkg-config
-  libcgal-dev libcli11-dev libfmt-dev libglm-dev libjs-chart.js libmeshoptimizer-dev libpng-dev libtbb-dev
+  libcgal-dev libcli11-dev libdraco-dev libfmt-dev libglm-dev libjs-chart.js libmeshoptimizer-dev libpng-dev libtbb-dev
   libwebp-dev libxxhash-dev libzstd-dev nlohmann-json3-dev
   ocl-icd-opencl-dev opencl-clhpp-headers opencl-headers pocl-opencl-icd
   glslang-tools libvulkan-dev

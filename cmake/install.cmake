@@ -50,7 +50,7 @@ sl_library(pvs HEADERS ${pvs_headers} TARGETS sightline_base sightline_io sightl
 set(objects sightline_bvh sightline_scene sightline_formats sightline_sampling sightline_trace sightline_device
     sightline_device_gpu sightline_device_cpu sightline_device_naive sightline_device_embree sightline_device_registry sightline_page
     report_page_parts sightline_gvs sightline_bake sightline_api)
-set(packages fmt::fmt PkgConfig::xxhash TBB::tbb PkgConfig::webp PNG::PNG Threads::Threads
+set(packages fmt::fmt PkgConfig::draco PkgConfig::xxhash TBB::tbb PkgConfig::webp PNG::PNG Threads::Threads
     meshoptimizer::meshoptimizer ${CMAKE_DL_LIBS})
 if(SL_WITH_OPENCL)
   list(APPEND objects cl_kernel_sources sightline_opencl sightline_device_opencl)

@@ -19,7 +19,9 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
   const std::string& device = session.options().device;
   checkParams(params);
   requireMethodOn(params.method, device);
-  if (const auto problem = cellProblem(cells)) throw Error(problem->text(), kExitUsage);
+  const glm::dvec3& offset = session.scene().offset;
+  std::vector<ViewCell> planned = moved({cells.begin(), cells.end()}, -offset);
+  if (const auto problem = cellProblem(planned)) throw Error(problem->text(), kExitUsage);
   const bool draws = params.method == Method::kRaster;
   if (draws && !(content.doors.empty() && session.options().see_through.empty())) {
     throw Error(
@@ -37,7 +39,8 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
   inputs.has_witnesses = content.witnesses == Witnesses::kKeep;
   inputs.doors = content.doors;
   inputs.see_through = session.options().see_through;
-  inputs.planned.assign(cells.begin(), cells.end());
+  inputs.offset = offset;
+  inputs.planned = std::move(planned);
   inputs.version = versionOf(inputs);
   return inputs;
 }

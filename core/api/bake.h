@@ -30,7 +30,8 @@ struct BakeContent {
 /// cells and parameters give equal sets, bit for bit, whatever the number of threads, on "cpu" and every
 /// "opencl" device. Opens the session.
 ///
-/// cells: at least one, each sound (cellProblem), no name twice; world space, in the scene's units.
+/// cells: at least one, each sound (cellProblem), no name twice; in the coordinates of the scene's
+/// file: Scene::offset is taken off them, and off the cells that are returned.
 /// Returns all cells; when *events.stop became true, those finished by then: fewer cells than planned.
 /// Throws Error that names what is wrong with cells or parameters before any work, or what failed; nothing is
 /// returned then.

@@ -15,9 +15,9 @@ Json toJson(const StageStats& stage) {
 
 }  // namespace
 
-Json cellToJson(const ViewCell& cell) {
+Json cellToJson(const ViewCell& cell, const glm::dvec3& offset) {
   return {{"name", cell.name},
-          {"center", toJson(cell.center)},
+          {"center", toJson(cell.center + offset)},
           {"size", toJson(cell.size)},
           {"rotation", toJson(cell.rotation)}};
 }

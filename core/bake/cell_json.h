@@ -9,8 +9,8 @@ namespace sightline {
 
 using Json = nlohmann::ordered_json;
 
-/// name, center, size, rotation, as in a cells file.
-Json cellToJson(const ViewCell& cell);
+/// name, center, size, rotation, as in a cells file. offset: of the scene, put back.
+Json cellToJson(const ViewCell& cell, const glm::dvec3& offset);
 
 /// Adds all statistics of a baked cell; triangles: of the scene.
 void addCellStatistics(Json& json, const CellSummary& cell, uint64_t triangles);

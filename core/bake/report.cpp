@@ -83,6 +83,7 @@ SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t has
           scene.opaque_mask_triangles,
           countSurfaces(scene.surfaces),
           scene.warnings,
+          scene.offset,
           scene.instances.size(),
           scene.triangles.size()};
 }
@@ -101,7 +102,7 @@ std::string reportJson(const BakeReport& report) {
   Json cells = Json::array();
   for (size_t i = 0; i < report.cells.size(); ++i) {
     const CellSummary& cell = report.cells[i];
-    Json json = cellToJson(cell.cell);
+    Json json = cellToJson(cell.cell, report.scene.offset);
     json["warnings"] = toJson(warningsOf(report, i));
     addCellStatistics(json, cell, report.scene.triangles);
     json["leaks"] = i < report.leaks.size() ? toJson(report.leaks[i]) : Json(nullptr);
@@ -118,6 +119,7 @@ std::string reportJson(const BakeReport& report) {
                        {"spatial_splits", report.spatial_splits},
                        {"witnesses", report.witnesses},
                        {"repair", report.repair},
+                       {"ignored_extensions", report.ignored_extensions},
                        {"doors", toJson(report.doors)},
                        {"see_through", toJson(report.see_through)},
                        {"smallest_hole", report.params.smallest_hole > 0}}},

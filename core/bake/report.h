@@ -34,6 +34,7 @@ struct SceneSummary {
   uint64_t opaque_masks = 0;          ///< triangles whose masks were loaded as opaque
   SurfaceCounts surfaces;             ///< what rays meet that does not simply end them
   std::vector<std::string> warnings;  ///< of loading (Scene)
+  glm::dvec3 offset{0.0};             ///< of the scene
   uint64_t instances = 0;             ///< 0: the scene is traced as plain triangles
   uint64_t stored_triangles = 0;      ///< in the scene and its tree
 };
@@ -48,6 +49,7 @@ struct BakeReport {
   std::optional<TreeSummary> tree;   ///< as device
   std::string set;                   ///< "array" or "hash"; empty without a device
   bool spatial_splits = false, witnesses = false, repair = false;
+  std::vector<std::string> ignored_extensions;  ///< as the scene was loaded
   BakeParams params;
   std::vector<CellSummary> cells;                  ///< finished, in order
   std::vector<std::vector<CellWarning>> warnings;  ///< checkCells of all planned cells; empty: not checked

@@ -17,6 +17,7 @@ Json toJson(const SceneSummary& scene) {
           {"glass_triangles", scene.glass},
           {"single_sided_triangles", scene.single_sided},
           {"hidden_nodes", scene.hidden_nodes},
+          {"offset", {scene.offset.x, scene.offset.y, scene.offset.z}},
           {"instances", scene.instances},
           {"stored_triangles", scene.stored_triangles},
           {"surfaces",

@@ -45,6 +45,16 @@ CellFrame cellFrame(const ViewCell& cell) {
   return frame;
 }
 
+ViewCell moved(ViewCell cell, const glm::dvec3& by) {
+  cell.center += by;
+  return cell;
+}
+
+std::vector<ViewCell> moved(std::vector<ViewCell> cells, const glm::dvec3& by) {
+  for (ViewCell& cell : cells) cell.center += by;
+  return cells;
+}
+
 std::vector<Face> cellFaces(const ViewCell& cell) {
   const CellFrame frame = cellFrame(cell);
   if (cell.flat()) return {makeFace(frame, 2, 1.0)};

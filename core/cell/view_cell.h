@@ -22,6 +22,11 @@ struct ViewCell {
   bool operator==(const ViewCell&) const = default;
 };
 
+/// The cells, each moved by as much: from a file's coordinates to those of a scene with an offset
+/// (Scene::offset), or back.
+ViewCell moved(ViewCell cell, const glm::dvec3& by);
+std::vector<ViewCell> moved(std::vector<ViewCell> cells, const glm::dvec3& by);
+
 /// The rectangles from which rays leave: one for a flat cell, else those of the six with an area, in the
 /// order -x, +x, -y, +y, -z, +z of the local axes.
 std::vector<Face> cellFaces(const ViewCell& cell);

@@ -41,7 +41,8 @@ BakeReport startReport(const BakeOptions& options, const Scene& scene, const Bak
   report.scene = summarize(scene, bake.head().scene_name, bake.head().scene_hash);
   report.spatial_splits = options.spatial_splits;
   report.witnesses = options.witnesses;
-  report.repair = options.repair;
+  report.repair = options.load.repair;
+  report.ignored_extensions = options.load.ignored_extensions;
   report.params = options.params;
   report.doors = bake.head().doors;
   report.see_through = bake.head().see_through;
@@ -257,7 +258,7 @@ void runBake(const BakeOptions& options) {
                   std::array{options.scene, options.cells});
   if (!options.pictures.empty()) makeFolder(options.pictures);
   const TextOutputs outputs(reports);
-  Scene loaded = loadScene(options.scene, {.repair = options.repair, .flatten = options.flatten});
+  Scene loaded = loadScene(options.scene, options.load);
   SessionOptions session_options = sessionOptions(options, loaded);
   Session session(std::move(loaded), std::move(session_options));
   const Scene& scene = session.scene();

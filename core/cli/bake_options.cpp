@@ -4,6 +4,7 @@
 
 #include "core/cli/device_check.h"
 #include "core/cli/free_side_option.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/gvs/thesis_params.h"
@@ -160,11 +161,7 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
       ->allow_extra_args(false)
       ->type_name("PATTERN");
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
-  command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");
-  command.add_flag(
-      "--flatten", options.flatten,
-      "write out meshes that many nodes show instead of tracing them as instances: the same sets, "
-      "faster rays, more memory");
+  declareLoading(command, options.load);
   command.add_flag("--overwrite", options.overwrite, "replace a bake with other inputs");
   command.add_flag(
       "--strict-cells", options.strict_cells,

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/device/device.h"
+#include "core/formats/load_scene.h"
 #include "core/pvs/bake_params.h"
 #include "core/scene/in_solid.h"
 
@@ -19,8 +20,9 @@ struct BakeOptions {
   std::string set = "auto";  ///< as device_options.set, for the report
   DeviceOptions device_options;
   BakeParams params;
+  SceneLoadOptions load;
   std::vector<std::string> doors, see_through;  ///< patterns of names
-  bool repair = false, flatten = false, witnesses = false, spatial_splits = false, overwrite = false;
+  bool witnesses = false, spatial_splits = false, overwrite = false;
   bool strict_cells = false;              ///< a warning about a cell is an error
   FreeSide free_side = FreeSide::kFront;  ///< of the scene's faces, for the warning of cells in solids
 };

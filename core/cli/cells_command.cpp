@@ -33,6 +33,7 @@ namespace {
 
 struct CellsArguments {
   std::filesystem::path scene, output;
+  SceneLoadOptions load;
   bool overwrite = false;
   std::string grid;
   std::string origin;
@@ -102,14 +103,15 @@ std::vector<glm::dvec3> readPath(const std::vector<std::string>& arguments) {
   return points;
 }
 
-GridOptions gridOptions(const CellsArguments& arguments) {
+/// offset: of the scene; arguments have the file's coordinates.
+GridOptions gridOptions(const CellsArguments& arguments, const glm::dvec3& offset) {
   GridOptions options = arguments.grid_options;
   options.size = parseSize(arguments.grid);
   options.margin = arguments.margin;
-  if (!arguments.origin.empty()) options.origin = parsePoint(arguments.origin, "--origin");
+  if (!arguments.origin.empty()) options.origin = parsePoint(arguments.origin, "--origin") - offset;
   if (!arguments.region.empty()) {
-    options.region = {parsePoint(arguments.region[0], "--region"),
-                      parsePoint(arguments.region[1], "--region")};
+    options.region = {parsePoint(arguments.region[0], "--region") - offset,
+                      parsePoint(arguments.region[1], "--region") - offset};
   }
   if (!arguments.count.empty()) {
     options.count = {arguments.count[0], arguments.count[1], arguments.count[2]};
@@ -143,7 +145,7 @@ std::vector<ViewCell> runGrid(const Scene& scene, const GridOptions& options, Gr
 
 std::vector<ViewCell> placeGrid(const Scene& scene, const CellsArguments& arguments) {
   GridCounts counts;
-  std::vector<ViewCell> cells = runGrid(scene, gridOptions(arguments), counts);
+  std::vector<ViewCell> cells = runGrid(scene, gridOptions(arguments, scene.offset), counts);
   const std::string line = fmt::format(
       "{} boxes: {} kept, {} met by triangles, {} with nothing below, {} too high, {} inside of solids",
       counts.boxes, counts.kept, counts.blocked, counts.nothing_below, counts.too_high, counts.in_solid);
@@ -174,7 +176,9 @@ void sayBlocked(const std::vector<ClearCells::Blocked>& blocked) {
 
 std::vector<ViewCell> placePath(const Scene& scene, const CellsArguments& arguments) {
   const PathOptions& options = arguments.path_options;
-  std::vector<ViewCell> cells = pathCells(readPath(arguments.path), options);
+  std::vector<glm::dvec3> points = readPath(arguments.path);
+  for (glm::dvec3& point : points) point -= scene.offset;
+  std::vector<ViewCell> cells = pathCells(points, options);
   const double smallest = std::min({options.width, options.height, options.length});
   const double margin = arguments.margin.value_or(defaultMargin(sceneBounds(scene), smallest));
   checkMargin(margin, smallest, "cells along a path");
@@ -204,10 +208,10 @@ void run(const CellsArguments& arguments) {
   requireSeparate(std::array{arguments.output}, inputs);
   requireNew(arguments.output, arguments.overwrite);
   const TextOutputs outputs({&arguments.output, 1});
-  const Scene scene = loadScene(arguments.scene);
+  const Scene scene = loadScene(arguments.scene, arguments.load);
   const std::vector<ViewCell> cells =
       arguments.grid.empty() ? placePath(scene, arguments) : placeGrid(scene, arguments);
-  outputs.save(cellsText(cells, arguments.output), arguments.output);
+  outputs.save(cellsText(moved(cells, scene.offset), arguments.output), arguments.output);
   fmt::print("{}: {} view cells\n", arguments.output.string(), cells.size());
 }
 
@@ -287,6 +291,7 @@ void addCellsCommand(CLI::App& app) {
   command->add_option("--margin", a->margin,
                       "How far boxes keep from triangles; 0: they may touch, and those of the path cut, some "
                       "(default: a hundredth of their smallest extent)");
+  declareLoading(*command, a->load);
   declareGrid(*command, *a);
   declarePath(*command, *a);
   command->footer(kCellsFooter);

@@ -12,6 +12,7 @@
 #include "core/cli/bake_options.h"
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
@@ -32,7 +33,8 @@ struct CompareCommand {
   DeviceOptions device_options;
   ViewOptions views;
   CompareOptions options;
-  bool spatial_splits = false, repair = false;
+  SceneLoadOptions load;
+  bool spatial_splits = false;
 };
 
 CompareEvents statusEvents(StatusLine& status, const std::string& place, const StopSignal& stop) {
@@ -101,12 +103,11 @@ void run(const CompareCommand& command) {
   const std::array reports = {command.report, command.html, command.csv};
   requireSeparate(reports, std::array{command.scene, command.cells});
   const TextOutputs outputs(reports);
-  Session session(loadScene(command.scene, {.repair = command.repair}),
-                  {.device = command.device,
-                   .device_options = command.device_options,
-                   .spatial_splits = command.spatial_splits});
+  Session session(loadScene(command.scene, command.load), {.device = command.device,
+                                                           .device_options = command.device_options,
+                                                           .spatial_splits = command.spatial_splits});
   const Scene& scene = session.scene();
-  const std::vector<ViewCell> cells = loadCells(command.cells);
+  const std::vector<ViewCell> cells = moved(loadCells(command.cells), -scene.offset);
   std::vector<Device*> by_method;
   for (const Method method : command.options.methods) by_method.push_back(&session.parts().device(method));
 
@@ -137,7 +138,7 @@ void declareFiles(CLI::App& command, CompareCommand& options) {
       ->type_name("R.json");
   command.add_option("--csv", options.csv, "write the points of the budget as CSV")->type_name("R.csv");
   command.add_option("--html", options.html, "write a page with tables and charts")->type_name("R.html");
-  command.add_flag("--repair", options.repair, "drop broken triangles instead of refusing the scene");
+  declareLoading(command, options.load);
 }
 
 void declareComparison(CLI::App& command, CompareCommand& options) {

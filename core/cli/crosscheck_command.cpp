@@ -11,6 +11,7 @@
 #include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/rounding_option.h"
@@ -36,7 +37,8 @@ struct CrosscheckCommand {
   double scale = 1, move = 0;
   CrosscheckOptions options;
   CrosscheckLimits limits;
-  bool repair = false, spatial_splits = false, pvs = false, overwrite = false;
+  SceneLoadOptions load;
+  bool spatial_splits = false, pvs = false, overwrite = false;
   uint32_t n_rand = 1'000'000;
 };
 
@@ -163,8 +165,8 @@ void run(const CrosscheckCommand& command) {
     prepareReproducerFolder(command.reproduce, command.overwrite, std::array{command.scene, command.cells});
   }
   const TextOutputs outputs({&command.report, 1});
-  Scene scene = loadScene(command.scene, {.repair = command.repair});
-  std::vector<ViewCell> cells = loadCells(command.cells);
+  Scene scene = loadScene(command.scene, command.load);
+  std::vector<ViewCell> cells = moved(loadCells(command.cells), -scene.offset);
   placeElsewhere(scene, cells, command.scale, command.move);
   for (const std::string& name : command.devices) requireDevice(name);
   const Bvh bvh = buildSceneTree(scene, {.spatial_splits = command.spatial_splits});
@@ -294,7 +296,7 @@ void addCrosscheckCommand(CLI::App& app) {
       ->type_name("DIR");
   command->add_flag("--overwrite", options->overwrite, "replace reproducers of an earlier run");
   command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
-  command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");
+  declareLoading(*command, options->load);
   command->add_flag("--pvs", options->pvs,
                     "also bake on each device (two or more), and explain how the sets differ");
   command->add_option("--n-rand", options->n_rand, "random rays an iteration of these bakes")

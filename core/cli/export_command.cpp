@@ -12,6 +12,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/doors_option.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
@@ -31,6 +32,7 @@ namespace {
 struct ExportOptions {
   std::filesystem::path pvs, out, scene;
   std::string cell, format;
+  SceneLoadOptions load;
   DoorState doors = DoorState::kClosed;
   uint32_t rays = 1'000'000;  ///< of each cell, and below: for objects
   double least = 0;
@@ -44,7 +46,7 @@ void exportObjects(const ExportOptions& options, const TextOutputs& outputs) {
   }
   const PvsFile baked = loadFinishedCells(options.pvs);
   const PvsFile pvs = inState(baked, options.doors, options.pvs);
-  Scene loaded = loadScene(options.scene);
+  Scene loaded = loadScene(options.scene, options.load);
   requireScene(pvs, loaded, options.pvs);
   Session session(inState(std::move(loaded), baked, options.doors), {.device = options.device});
   const StopSignal stop;
@@ -93,7 +95,7 @@ void runExport(const ExportOptions& options) {
   const CellPvs& cell = chooseCell(pvs, options.cell, options.pvs);
   std::optional<Scene> scene;
   if (!options.scene.empty()) {
-    scene = loadScene(options.scene);
+    scene = loadScene(options.scene, options.load);
     requireScene(pvs, *scene, options.pvs);
   }
   if (options.format == "ids") outputs.save(idsText(cell), options.out);
@@ -137,6 +139,7 @@ void addExportCommand(CLI::App& app) {
       ->add_option("--scene", options->scene,
                    "the baked scene: for obj, glb and objects, and for json's objects")
       ->type_name("SCENE");
+  declareLoading(*command, options->load, kAsBakeDid);
   declareDoors(*command, options->doors);
   const char* const group = "For --format objects";
   command->add_option("--rays", options->rays, "random rays of each cell, which share the view among objects")

@@ -7,12 +7,14 @@
 #include "core/bake/cell_table.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"
+#include "core/cli/load_options.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
 #include "core/pvs/param_table.h"
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
+#include "core/scene/median_edge.h"
 
 namespace sightline {
 namespace {
@@ -26,6 +28,11 @@ void row(const std::string& name, const std::string& value) {
 
 std::string point(const glm::dvec3& p) {
   return fmt::format("({:g}, {:g}, {:g})", p.x, p.y, p.z);
+}
+
+/// With digits for large numbers.
+std::string farPoint(const glm::dvec3& p) {
+  return fmt::format("({:.12g}, {:.12g}, {:.12g})", p.x, p.y, p.z);
 }
 
 std::string cellLine(const ViewCell& cell) {
@@ -44,9 +51,35 @@ bool isPvs(const std::filesystem::path& file) {
   return std::memcmp(start, kPvsMagic, sizeof(start)) == 0 || extension == ".pvs" || extension == ".part";
 }
 
-void showScene(const std::filesystem::path& file, bool repair, bool flatten) {
-  const Scene scene = loadScene(file, {.repair = repair, .flatten = flatten});
+/// Whether a scene looks as if its unit were a millimetre: larger than a kilometre in metres, of parts larger
+/// than rooms. (A hint: terrain may be so too.)
+bool looksLikeMillimetres(const glm::dvec3& extent, double median_edge) {
+  constexpr double kSmallest = 1'000, kLargest = 1'000'000, kSmallestEdge = 20;
+  const double longest = std::max({extent.x, extent.y, extent.z});
+  return longest >= kSmallest && longest <= kLargest && median_edge >= kSmallestEdge;
+}
+
+/// Where the scene lies, in its file's coordinates, and how large it and its detail are.
+void showSize(const Scene& scene) {
   const Bounds bounds = sceneBounds(scene);
+  const glm::dvec3 extent = glm::dvec3(bounds.high) - glm::dvec3(bounds.low);
+  const double median_edge = medianEdge(scene);
+  if (scene.offset == glm::dvec3(0.0)) {
+    row("bounds", point(bounds.low) + " to " + point(bounds.high));
+  } else {
+    row("bounds", farPoint(glm::dvec3(bounds.low) + scene.offset) + " to " +
+                      farPoint(glm::dvec3(bounds.high) + scene.offset));
+    row("offset", farPoint(scene.offset) + ", taken off: single precision would lose detail there");
+  }
+  row("extent",
+      fmt::format("{:g} x {:g} x {:g}, median edge {:g}", extent.x, extent.y, extent.z, median_edge));
+  if (looksLikeMillimetres(extent, median_edge)) {
+    row("hint", "looks like millimetres: then sizes of cells are millimetres too");
+  }
+}
+
+void showScene(const std::filesystem::path& file, const SceneLoadOptions& options) {
+  const Scene scene = loadScene(file, options);
   row("scene", file.string());
   row("triangles", std::to_string(scene.triangleCount()));
   if (scene.hasInstances()) {
@@ -54,10 +87,10 @@ void showScene(const std::filesystem::path& file, bool repair, bool flatten) {
                                  scene.meshes.size(), scene.triangles.size()));
   }
   row("vertices", std::to_string(scene.vertexCount()));
-  row("bounds", point(bounds.low) + " to " + point(bounds.high));
+  showSize(scene);
   row("degenerate",
       fmt::format("{} triangles without area (kept, cannot be seen)", scene.degenerate_triangles));
-  if (repair) row("repaired", fmt::format("{} triangles dropped", scene.repaired_triangles));
+  if (options.repair) row("repaired", fmt::format("{} triangles dropped", scene.repaired_triangles));
   if (scene.alpha_triangles != 0) row("alpha", fmt::format("{} triangles", scene.alpha_triangles));
   if (scene.glass_triangles != 0) row("glass", fmt::format("{} triangles", scene.glass_triangles));
   if (scene.single_sided_triangles != 0) {
@@ -107,6 +140,7 @@ void showPvs(const std::filesystem::path& file) {
   row("visible sets", fmt::format("{}, format version {}", file.string(), pvs.version));
   row("scene",
       fmt::format("{}, {} triangles, hash {}", pvs.scene_name, pvs.triangle_count, hashText(pvs.scene_hash)));
+  if (pvs.offset != glm::dvec3(0.0)) row("offset", farPoint(pvs.offset) + ", taken off coordinates");
   row("device", pvs.device);
   row("algorithm", fmt::format("revision {}{}", pvs.algorithm,
                                pvs.intersector.empty() ? "" : ", intersection test of " + pvs.intersector));
@@ -127,13 +161,13 @@ void showPvs(const std::filesystem::path& file) {
   std::fputs(("\n" + cellTable(cells, pvs.triangle_count)).c_str(), stdout);
 }
 
-void runInfo(const std::filesystem::path& file, bool repair, bool flatten) {
+void runInfo(const std::filesystem::path& file, const SceneLoadOptions& options) {
   if (isPvs(file)) {
     showPvs(file);
   } else if (lowerExtension(file) == ".json") {
     showCells(file);
   } else {
-    showScene(file, repair, flatten);
+    showScene(file, options);
   }
 }
 
@@ -142,12 +176,10 @@ void runInfo(const std::filesystem::path& file, bool repair, bool flatten) {
 void addInfoCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Say what a scene, cells or .pvs file holds");
   const auto file = std::make_shared<std::filesystem::path>();
-  const auto repair = std::make_shared<bool>(false);
+  const auto options = std::make_shared<SceneLoadOptions>();
   command->add_option("file", *file, "scene, cells file, .pvs or .pvs.part")->required()->type_name("FILE");
-  command->add_flag("--repair", *repair, "drop a scene's broken triangles instead of refusing it");
-  const auto flatten = std::make_shared<bool>(false);
-  command->add_flag("--flatten", *flatten, "write out a scene's instances");
-  command->callback([file, repair, flatten] { runInfo(*file, *repair, *flatten); });
+  declareLoading(*command, *options, "drop a scene's broken triangles instead of refusing it");
+  command->callback([file, options] { runInfo(*file, *options); });
 }
 
 }  // namespace sightline

@@ -18,6 +18,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/doors_option.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/stop_signal.h"
@@ -43,7 +44,7 @@ struct MeasureCommand {
   MeasureOptions options;
   double max_average = std::numeric_limits<double>::infinity();
   double max_wrong = std::numeric_limits<double>::infinity();
-  bool repair = false;
+  SceneLoadOptions load;
   DoorState doors = DoorState::kClosed;
 };
 
@@ -195,7 +196,7 @@ void run(const MeasureCommand& command) {
   requireSeparate(reports, inputs);
   const TextOutputs outputs(reports);
   if (!command.pictures.empty()) makeFolder(command.pictures);
-  Scene loaded = loadScene(command.scene, {.repair = command.repair});
+  Scene loaded = loadScene(command.scene, command.load);
   std::vector<PvsFile> files = loadSets(command, loaded);
   Session session(inState(std::move(loaded), files.front(), command.doors), {.device = command.device});
   const Scene& scene = session.scene();
@@ -258,8 +259,8 @@ void declareFiles(CLI::App& command, MeasureCommand& options) {
       .add_option("--html", options.html,
                   "write a page with tables, a chart and the pictures, if there are any")
       ->type_name("R.html");
+  declareLoading(command, options.load, kAsBakeDid);
   declareDoors(command, options.doors);
-  command.add_flag("--repair", options.repair, "load the scene as bake --repair did");
 }
 
 void declareMeasure(CLI::App& command, MeasureCommand& options) {

@@ -12,6 +12,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/doors_option.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/formats/load_scene.h"
@@ -31,7 +32,7 @@ struct PictureCommand {
   std::filesystem::path scene, pvs, output;
   std::string cell, view = "outside", device = "opencl", cut = "auto";
   PictureOptions options;
-  bool repair = false;
+  SceneLoadOptions load;
   DoorState doors = DoorState::kClosed;
 };
 
@@ -51,7 +52,7 @@ void draw(const PictureCommand& command) {
   const PvsFile baked = loadFinishedCells(command.pvs);
   const PvsFile pvs = inState(baked, command.doors, command.pvs);
   const CellPvs& cell = chooseCell(pvs, command.cell, command.pvs);
-  Scene loaded = loadScene(command.scene, {.repair = command.repair});
+  Scene loaded = loadScene(command.scene, command.load);
   requireScene(pvs, loaded, command.pvs);
   Session session(inState(std::move(loaded), baked, command.doors), {.device = command.device});
   const Scene& scene = session.scene();
@@ -61,8 +62,10 @@ void draw(const PictureCommand& command) {
   };
 
   const bool inside = command.view == "inside";
-  const Picture picture = inside ? renderInside(trace, scene, cell, command.options)
-                                 : renderOutside(trace, scene, cell, command.options);
+  PictureOptions options = command.options;
+  options.cut_height -= float(scene.offset.y);
+  const Picture picture =
+      inside ? renderInside(trace, scene, cell, options) : renderOutside(trace, scene, cell, options);
   savePng(picture.image, command.output);
   fmt::print("{}: {} from {}, {} of {} triangles\n", command.output.string(), cell.cell.name, command.view,
              cell.triangles.size(), scene.triangleCount());
@@ -126,7 +129,7 @@ void addPictureCommand(CLI::App& app) {
       ->check(deviceName())
       ->type_name("NAME")
       ->capture_default_str();
-  command->add_flag("--repair", options->repair, "load the scene as bake --repair did");
+  declareLoading(*command, options->load, kAsBakeDid);
   declareDoors(*command, options->doors);
   command->callback([options] {
     setCut(options->options, options->cut);

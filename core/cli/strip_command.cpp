@@ -12,6 +12,7 @@
 #include "core/base/text.h"
 #include "core/cli/bake_options.h"
 #include "core/cli/commands.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
@@ -35,6 +36,7 @@ struct StripArguments {
   std::filesystem::path scene, out;
   std::string from = "outside";
   StripOptions strip;
+  SceneLoadOptions load;
   uint32_t rays = 0, check_rays = 1'000'000;  ///< of each cell
   std::string device = "opencl";
   DeviceOptions device_options;
@@ -79,10 +81,11 @@ PvsFile loadSets(const StripArguments& arguments, const Scene& scene) {
 
 PvsFile setsOf(const StripArguments& arguments, Session& session) {
   if (isSets(arguments.from)) return loadSets(arguments, session.scene());
-  return bakeSets(
-      arguments,
-      arguments.from == "outside" ? outsideCells(sceneBounds(session.scene())) : loadCells(arguments.from),
-      session);
+  return bakeSets(arguments,
+                  arguments.from == "outside"
+                      ? moved(outsideCells(sceneBounds(session.scene())), session.scene().offset)
+                      : loadCells(arguments.from),
+                  session);
 }
 
 /// In whichever state the doors of the bake are.
@@ -171,7 +174,9 @@ void addSeen(const StripArguments& arguments, const PvsFile& pvs, Session& sessi
 /// Reads the output back, and traces fresh rays in both scenes.
 void check(const StripArguments& arguments, const PvsFile& pvs, Session& session) {
   if (arguments.check_rays == 0) return;
-  Session stripped(loadScene(arguments.out), sessionOf(arguments));
+  SceneLoadOptions load = arguments.load;
+  load.offset = session.scene().offset;
+  Session stripped(loadScene(arguments.out, load), sessionOf(arguments));
   TraceStatus status("check", pvs.cells.size());
   uint64_t rays = 0;
   LostRays sum;
@@ -201,7 +206,9 @@ void runStrip(const StripArguments& arguments) {
       std::array{arguments.out},
       std::array{arguments.scene, outside ? std::filesystem::path() : std::filesystem::path(arguments.from)});
   requireNew(arguments.out, arguments.strip.overwrite);
-  Session session(loadScene(arguments.scene, {.faces = true}), sessionOf(arguments));
+  SceneLoadOptions load = arguments.load;
+  load.faces = true;
+  Session session(loadScene(arguments.scene, load), sessionOf(arguments));
   const Scene& scene = session.scene();
   fmt::print("{}: {} triangles, {}\n", arguments.scene.string(), scene.triangleCount(),
              counted(scene.objects.size(), "object"));
@@ -210,7 +217,10 @@ void runStrip(const StripArguments& arguments) {
   sayPromise(pvs);
   std::vector<bool> seen = seenOf(pvs);
   addSeen(arguments, pvs, session, seen);
-  sayResult(arguments, scene, stripScene(scene, arguments.scene, seen, arguments.strip, arguments.out));
+  StripOptions options = arguments.strip;
+  options.ignored_extensions = arguments.load.ignored_extensions;
+  options.allow_external = arguments.load.allow_external;
+  sayResult(arguments, scene, stripScene(scene, arguments.scene, seen, options, arguments.out));
   check(arguments, pvs, session);
 }
 
@@ -258,6 +268,7 @@ void addStripCommand(CLI::App& app) {
       ->transform(wholeNumber(0, 1u << 30))
       ->type_name("N")
       ->capture_default_str();
+  declareForeign(*command, a->load);
   declareMachine(*command, a->device, a->device_options, a->spatial_splits);
   declareSampling(*command, a->params);
   declareLimits(*command, a->params);

@@ -9,6 +9,7 @@
 #include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/rounding_option.h"
 #include "core/crosscheck/difference.h"
@@ -27,7 +28,8 @@ struct TraceCommand {
   std::string from, along;
   std::vector<std::string> devices = {"cpu"};
   RoundingLimit rounding;
-  bool repair = false, spatial_splits = false, json = false;
+  SceneLoadOptions load;
+  bool spatial_splits = false, json = false;
 };
 
 /// What all tracers take in scenes of up to 2^20 units (core/shared/box.h; Embree aborts near the end of
@@ -101,7 +103,7 @@ Json toJson(const TraceCommand& command, const Scene& scene, const RayAnswers& a
 void run(const TraceCommand& command) {
   const Ray ray = parseRay(command);
   for (const std::string& name : command.devices) requireDevice(name);
-  const Scene scene = loadScene(command.scene, {.repair = command.repair});
+  const Scene scene = loadScene(command.scene, command.load);
   const Bvh bvh = buildSceneTree(scene, {.spatial_splits = command.spatial_splits});
   std::vector<std::unique_ptr<Tracer>> devices;
   std::vector<Tracer*> pointers;
@@ -140,7 +142,7 @@ void addTraceCommand(CLI::App& app) {
   declareRounding(*command, options->rounding);
   command->add_flag("--json", options->json, "print JSON (docs/report.md)");
   command->add_flag("--spatial-splits", options->spatial_splits, "trace the tree with spatial splits");
-  command->add_flag("--repair", options->repair, "drop broken triangles instead of refusing the scene");
+  declareLoading(*command, options->load);
   command->footer(
       "Numbers are decimals (-1.5), hexadecimal floats (0x1.8p+0), or the bits of\n"
       "floats (0x3fc00000). Exit code 0: every answer is right, if only up to rounding;\n"

@@ -10,6 +10,7 @@
 #include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/doors_option.h"
+#include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
@@ -28,7 +29,8 @@ struct VerifyCommand {
   VerifyOptions options;
   uint64_t max_disproved = 0;
   double min_proven = 0.9999;
-  bool repair = false, overwrite = false;
+  SceneLoadOptions load;
+  bool overwrite = false;
   DoorState doors = DoorState::kClosed;
 };
 
@@ -93,7 +95,7 @@ void run(const VerifyCommand& command) {
   if (!pvs.has_witnesses) {
     throw Error(fmt::format("{}: has no witnesses; bake it with --witnesses", command.pvs.string()));
   }
-  Scene loaded = loadScene(command.scene, {.repair = command.repair});
+  Scene loaded = loadScene(command.scene, command.load);
   requireScene(pvs, loaded, command.pvs);
   const Scene scene = inState(std::move(loaded), baked, command.doors);
   const Bvh bvh = buildSceneTree(scene);
@@ -136,7 +138,7 @@ void addVerifyCommand(CLI::App& app) {
   declareDoors(*command, options->doors);
   declareRounding(*command, options->options.rounding);
   command->add_flag("--overwrite", options->overwrite, "replace NEW.pvs");
-  command->add_flag("--repair", options->repair, "load the scene as bake --repair did");
+  declareLoading(*command, options->load, kAsBakeDid);
   command->callback([options] { run(*options); });
 }
 

@@ -96,7 +96,7 @@ std::string comparisonJson(const ComparisonReport& report) {
   }
   Json cells = Json::array();
   for (const CellComparison& cell : report.cells) {
-    Json json = cellToJson(cell.cell);
+    Json json = cellToJson(cell.cell, report.scene.offset);
     for (const MethodRun& run : cell.runs) json["runs"].push_back(runJson(run));
     cells.push_back(json);
   }

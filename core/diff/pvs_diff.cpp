@@ -43,7 +43,7 @@ std::string shapeText(const ViewCell& cell) {
 std::map<std::string, std::string> planOf(const PvsFile& pvs) {
   std::map<std::string, std::string> plan;
   for (size_t i = 0; i < pvs.planned.size(); ++i) {
-    plan[pvs.planned[i].name] = fmt::format("number {}, {}", i, shapeText(pvs.planned[i]));
+    plan[pvs.planned[i].name] = fmt::format("number {}, {}", i, shapeText(moved(pvs.planned[i], pvs.offset)));
   }
   return plan;
 }

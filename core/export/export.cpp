@@ -60,7 +60,7 @@ std::string cellJson(const PvsFile& pvs, const CellPvs& cell, const Scene* scene
   Json json = {{"scene", pvs.scene_name},
                {"scene_hash", hashText(pvs.scene_hash)},
                {"scene_triangles", pvs.triangle_count},
-               {"cell", cellToJson(cell.cell)}};
+               {"cell", cellToJson(cell.cell, pvs.offset)}};
   json["statistics"] = Json::object();
   addCellStatistics(json["statistics"], summarize(cell), pvs.triangle_count);
   if (scene) json["objects"] = objectsJson(*scene, cell);
@@ -73,6 +73,7 @@ Scene visibleScene(const Scene& scene, const CellPvs& cell) {
     throw Error(fmt::format("cell {} sees no triangle: there is nothing to export", cell.cell.name));
   }
   Scene visible;
+  visible.offset = scene.offset;
   std::vector<uint32_t> new_index(scene.vertexCount(), kNoTriangle);
   size_t id = 0;
   for (const SceneObject& object : scene.objects) copyObject(scene, object, cell, id, new_index, visible);

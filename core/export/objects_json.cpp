@@ -86,7 +86,7 @@ std::string objectsJson(const PvsFile& pvs, const Scene& scene, const std::vecto
                {"cells", Json::array()}};
   for (size_t i = 0; i < hits.size(); ++i) {
     const CellPvs& cell = pvs.cells[i];
-    Json entry = cellToJson(cell.cell);
+    Json entry = cellToJson(cell.cell, pvs.offset);
     entry["visible"] = cell.triangles.size();
     entry["hits"] = hits[i].hits;
     entry["objects"] = cellObjects(scene, cell, hits[i], least);

@@ -7,8 +7,9 @@
 
 namespace sightline {
 
-/// The scene as a GLB file, handed to `write` in a few pieces; loadScene returns the same positions, triangles
-/// and objects of it, bit for bit. name: of what is written, for errors. Throws Error.
+/// The scene as a GLB file, handed to `write` in a few pieces; loadScene returns the same positions,
+/// triangles and objects of it, bit for bit; its offset is put back. name: of what is written, for errors.
+/// Throws Error.
 void writeGlb(const Scene& scene, const std::string& name,
               const std::function<void(std::string_view)>& write);
 

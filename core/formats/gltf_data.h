@@ -12,15 +12,21 @@ namespace sightline {
 
 /// The bytes behind a glTF document: finds buffers (GLB chunk, data URI, file beside), decompresses buffer
 /// views and checks every range before anything is read. Loads each buffer and view when first asked for.
+/// A buffer may be shorter than it claims, where no view needs the rest.
 class GltfData {
  public:
   /// `bin` is the GLB's second chunk, or empty; it must outlive the object. `file` is the document's own.
-  GltfData(const GltfDocument& document, std::string_view bin, const std::filesystem::path& file);
+  /// allow_external: SceneLoadOptions.
+  GltfData(const GltfDocument& document, std::string_view bin, const std::filesystem::path& file,
+           bool allow_external = false);
 
   /// Bytes of a buffer view, decompressed. Throws Error.
   std::span<const uint8_t> view(size_t index);
 
-  /// Bytes of a buffer: those that the document claims. Throws Error.
+  /// Adds a view of these bytes to the document, which must be the one that this was made with.
+  size_t addView(GltfDocument& document, std::vector<uint8_t> bytes);
+
+  /// Bytes of a buffer: those that the document claims, or fewer, if there are fewer. Throws Error.
   std::span<const uint8_t> buffer(size_t index);
 
   /// Bytes that a uri names, in it or in a file beside the document. place: of the uri. Throws Error.
@@ -43,6 +49,7 @@ class GltfData {
   const GltfDocument& document_;
   std::span<const uint8_t> bin_;
   std::filesystem::path file_;
+  bool allow_external_;
   std::vector<Bytes> buffers_;
   std::vector<Bytes> views_;
 };

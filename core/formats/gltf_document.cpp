@@ -15,31 +15,77 @@
 namespace sightline {
 namespace {
 
-/// Extensions that a file may require because they change no triangle: materials, textures, lights, meta
-/// data.
-bool leavesGeometry(const std::string& extension) {
-  constexpr std::array<const char*, 8> kPrefixes = {"KHR_materials_", "KHR_texture_",         "EXT_texture_",
-                                                    "MSFT_texture_",  "KHR_lights_",          "EXT_lights_",
-                                                    "KHR_xmp",        "KHR_animation_pointer"};
-  for (const char* prefix : kPrefixes) {
-    if (extension.starts_with(prefix)) return true;
+/// Extensions that a file may require because they move no triangle: materials, textures, lights, meta data,
+/// sound, physics, what an engine does with a node. A name that ends in '_' stands for all that begin so.
+constexpr std::array kLeaveGeometry = {
+    "ADOBE_materials_",
+    "AGI_articulations",
+    "AGI_stk_metadata",
+    "CESIUM_primitive_outline",
+    "EXT_instance_features",
+    "EXT_lights_",
+    "EXT_materials_",
+    "EXT_mesh_features",
+    "EXT_mesh_manifold",
+    "EXT_structural_metadata",
+    "EXT_texture_",
+    "FB_ngon_encoding",
+    "GODOT_single_root",
+    "KHR_animation_pointer",
+    "KHR_audio",
+    "KHR_audio_emitter",
+    "KHR_implicit_shapes",
+    "KHR_interactivity",
+    "KHR_lights_",
+    "KHR_materials_",
+    "KHR_node_hoverability",
+    "KHR_node_selectability",
+    "KHR_physics_rigid_bodies",
+    "KHR_technique_webgl",
+    "KHR_techniques_webgl",
+    "KHR_texture_",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "MOZ_",
+    "MSFT_audio_emitter",
+    "MSFT_packing_",
+    "MSFT_texture_",
+    "NV_materials_",
+    "OMI_",
+    "VRMC_",
+};
+
+/// Extensions that change triangles, and are read.
+constexpr std::array kRead = {"CESIUM_RTC",
+                              "EXT_mesh_gpu_instancing",
+                              "EXT_meshopt_compression",
+                              "KHR_draco_mesh_compression",
+                              "KHR_mesh_quantization",
+                              "KHR_meshopt_compression",
+                              "KHR_node_visibility",
+                              "MSFT_lod"};
+
+bool isKnown(std::string_view extension) {
+  for (const std::string_view name : kLeaveGeometry) {
+    if (name.ends_with('_') ? extension.starts_with(name) : extension == name) return true;
   }
-  return false;
+  return std::find(kRead.begin(), kRead.end(), extension) != kRead.end();
 }
 
-void checkRequirements(const JsonObject& document) {
-  const std::string version = document.requiredObject("asset").text("version").value_or("");
+void checkRequirements(const JsonObject& document, const std::vector<std::string>& ignored) {
+  const JsonObject asset = document.requiredObject("asset");
+  const std::string version = asset.isNumber("version") ? fmt::format("{}", *asset.real("version"))
+                                                        : asset.text("version").value_or("");
   if (!version.starts_with("2.")) {
-    document.fail("asset.version",
-                  fmt::format("\"{}\" is not supported, only glTF 2", cleanName(version.substr(0, 20))));
+    document.fail("asset.version", fmt::format("\"{}\" is not supported, only glTF 2; convert the file",
+                                               cleanName(version.substr(0, 20))));
   }
   for (const std::string& extension : document.texts("extensionsRequired")) {
-    if (extension == "EXT_meshopt_compression" || extension == "KHR_mesh_quantization" ||
-        extension == "KHR_node_visibility" || leavesGeometry(extension)) {
-      continue;
-    }
-    document.fail("extensionsRequired", fmt::format("{} is not supported; convert the file without it",
-                                                    nlohmann::json(extension).dump()));
+    if (isKnown(extension) || std::find(ignored.begin(), ignored.end(), extension) != ignored.end()) continue;
+    document.fail("extensionsRequired",
+                  fmt::format("{} is unknown; convert the file without it, or load it without what it adds "
+                              "(--ignore-extension)",
+                              nlohmann::json(cleanName(extension.substr(0, 100))).dump()));
   }
 }
 
@@ -56,10 +102,11 @@ GltfBuffer readBuffer(const JsonObject& object) {
   return buffer;
 }
 
-GltfCompression readCompression(const JsonObject& object, size_t buffers) {
+GltfCompression readCompression(const JsonObject& object, const char* extension, size_t buffers) {
   using Mode = GltfCompression::Mode;
   using Filter = GltfCompression::Filter;
   GltfCompression result;
+  result.extension = extension;
   result.buffer = object.requiredIndex("buffer", buffers);
   result.byte_offset = object.number("byteOffset").value_or(0);
   result.byte_length = object.requiredNumber("byteLength");
@@ -70,14 +117,16 @@ GltfCompression readCompression(const JsonObject& object, size_t buffers) {
   if (mode != "ATTRIBUTES" && mode != "TRIANGLES" && mode != "INDICES") {
     object.fail("mode", "expected ATTRIBUTES, TRIANGLES or INDICES");
   }
-  if (filter != "NONE" && filter != "OCTAHEDRAL" && filter != "QUATERNION" && filter != "EXPONENTIAL") {
-    object.fail("filter", "expected NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL");
+  if (filter != "NONE" && filter != "OCTAHEDRAL" && filter != "QUATERNION" && filter != "EXPONENTIAL" &&
+      filter != "COLOR") {
+    object.fail("filter", "expected NONE, OCTAHEDRAL, QUATERNION, EXPONENTIAL or COLOR");
   }
   result.mode =
       mode == "ATTRIBUTES" ? Mode::kAttributes : (mode == "TRIANGLES" ? Mode::kTriangles : Mode::kIndices);
   result.filter = filter == "NONE"         ? Filter::kNone
                   : filter == "OCTAHEDRAL" ? Filter::kOctahedral
                   : filter == "QUATERNION" ? Filter::kQuaternion
+                  : filter == "COLOR"      ? Filter::kColor
                                            : Filter::kExponential;
   if (result.filter != Filter::kNone && result.mode != Mode::kAttributes) {
     object.fail("filter", "must be NONE unless the mode is ATTRIBUTES");
@@ -92,8 +141,11 @@ GltfBufferView readView(const JsonObject& object, size_t buffers) {
   view.byte_length = object.requiredNumber("byteLength");
   view.byte_stride = object.number("byteStride").value_or(0);
   if (view.byte_stride > 252) object.fail("byteStride", fmt::format("{} is more than 252", view.byte_stride));
-  const auto compression = extensionOf(object, "EXT_meshopt_compression");
-  if (compression) view.compression = readCompression(*compression, buffers);
+  for (const char* extension : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
+    const auto compression = extensionOf(object, extension);
+    if (compression && !view.compression)
+      view.compression = readCompression(*compression, extension, buffers);
+  }
   return view;
 }
 
@@ -151,8 +203,37 @@ void readInfluences(const JsonObject& attributes, size_t accessors, GltfPrimitiv
   }
 }
 
-GltfPrimitive readPrimitive(const JsonObject& object, size_t accessors,
+/// The stream of a primitive; nothing where all accessors that make triangles have data of their own: then
+/// what is compressed is the same again, for those who read it.
+std::optional<GltfDraco> readDraco(const JsonObject& object, const JsonObject& attributes,
+                                   const GltfPrimitive& primitive, const GltfDocument& document) {
+  const auto extension = extensionOf(object, "KHR_draco_mesh_compression");
+  if (!extension) return std::nullopt;
+  const auto has_data = [&](const std::optional<size_t>& accessor) {
+    return !accessor || document.accessors[*accessor].view.has_value();
+  };
+  if (has_data(primitive.positions) && has_data(primitive.indices)) return std::nullopt;
+  GltfDraco draco;
+  draco.view = extension->requiredIndex("bufferView", document.views.size());
+  const JsonObject numbers = extension->requiredObject("attributes");
+  for (const std::string& name : numbers.keys()) {
+    const auto accessor = attributes.index(name.c_str(), document.accessors.size());
+    const bool is_mask_uv = accessor && accessor == primitive.mask_uv;
+    if (name != "POSITION" && !name.starts_with("JOINTS_") && !name.starts_with("WEIGHTS_") && !is_mask_uv)
+      continue;
+    const uint64_t number = numbers.requiredNumber(name.c_str());
+    if (number > 0xffffffff) numbers.fail(name, "expected a number below 2^32");
+    if (accessor && !has_data(accessor)) draco.attributes.emplace_back(*accessor, uint32_t(number));
+  }
+  if (primitive.mode != 4 && primitive.mode != 5) {
+    extension->fail("compresses triangles only, and the primitive's mode is neither 4 nor 5");
+  }
+  return draco;
+}
+
+GltfPrimitive readPrimitive(const JsonObject& object, const GltfDocument& document,
                             const std::vector<GltfMaterial>& materials) {
+  const size_t accessors = document.accessors.size();
   GltfPrimitive primitive;
   const JsonObject attributes = object.requiredObject("attributes");
   primitive.positions = attributes.index("POSITION", accessors);
@@ -169,10 +250,8 @@ GltfPrimitive readPrimitive(const JsonObject& object, size_t accessors,
     primitive.targets.push_back(target.index("POSITION", accessors));
   }
   readInfluences(attributes, accessors, primitive);
-  const auto extensions = object.object("extensions");
-  if (extensions && extensions->has("KHR_draco_mesh_compression")) {
-    object.fail("KHR_draco_mesh_compression is not supported; convert the file without it");
-  }
+  primitive.draco = readDraco(object, attributes, primitive, document);
+  if (primitive.draco) primitive.mode = 4;  // a stream holds triangles, whatever became of them later
   return primitive;
 }
 
@@ -188,11 +267,12 @@ std::optional<std::vector<double>> readWeights(const JsonObject& object, const G
   return weights;
 }
 
-GltfMesh readMesh(const JsonObject& object, size_t accessors, const std::vector<GltfMaterial>& materials) {
+GltfMesh readMesh(const JsonObject& object, const GltfDocument& document,
+                  const std::vector<GltfMaterial>& materials) {
   GltfMesh mesh;
   mesh.name = object.text("name").value_or("");
   for (const JsonObject& primitive : object.objects("primitives")) {
-    mesh.primitives.push_back(readPrimitive(primitive, accessors, materials));
+    mesh.primitives.push_back(readPrimitive(primitive, document, materials));
   }
   mesh.weights = readWeights(object, mesh).value_or(std::vector<double>());
   return mesh;
@@ -204,20 +284,6 @@ GltfSkin readSkin(const JsonObject& object, size_t accessors, size_t nodes) {
   if (skin.joints.empty()) object.fail("joints", "expected at least one");
   skin.inverse_bind = object.index("inverseBindMatrices", accessors);
   return skin;
-}
-
-/// A unit quaternion's matrix; one that is not quite unit is scaled to it.
-glm::dmat4 rotationMatrix(const std::vector<double>& q) {
-  const double s = 2.0 / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  const double x = q[0];
-  const double y = q[1];
-  const double z = q[2];
-  const double w = q[3];
-  glm::dmat4 m(1.0);
-  m[0] = {1.0 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w), 0.0};
-  m[1] = {s * (x * y - z * w), 1.0 - s * (x * x + z * z), s * (y * z + x * w), 0.0};
-  m[2] = {s * (x * z + y * w), s * (y * z - x * w), 1.0 - s * (x * x + y * y), 0.0};
-  return m;
 }
 
 glm::dmat4 readTransform(const JsonObject& object) {
@@ -234,14 +300,38 @@ glm::dmat4 readTransform(const JsonObject& object) {
     }
     return result;
   }
-  if (rotation && *rotation == std::vector<double>(4, 0.0)) object.fail("rotation", "the quaternion is zero");
-  glm::dmat4 result(1.0);
-  if (rotation) result = rotationMatrix(*rotation);
-  if (scale) {
-    for (int i = 0; i < 3; ++i) result[i] *= (*scale)[size_t(i)];
+  const auto vector = [](const std::vector<double>& v) { return glm::dvec3(v[0], v[1], v[2]); };
+  const std::vector<double> q = rotation.value_or(std::vector<double>{0, 0, 0, 1});
+  return gltfPlace(translation ? vector(*translation) : glm::dvec3(0.0), {q[0], q[1], q[2], q[3]},
+                   scale ? vector(*scale) : glm::dvec3(1.0));
+}
+
+/// Whether the node is turned by a quaternion of zeros, which is no rotation.
+bool hasZeroRotation(const JsonObject& object) {
+  const auto rotation = object.numbers("rotation", 4);
+  return rotation && *rotation == std::vector<double>(4, 0.0);
+}
+
+std::optional<GltfInstancing> readInstancing(const JsonObject& object, const GltfDocument& document) {
+  const auto extension = extensionOf(object, "EXT_mesh_gpu_instancing");
+  if (!extension) return std::nullopt;
+  const JsonObject attributes = extension->requiredObject("attributes");
+  const size_t accessors = document.accessors.size();
+  GltfInstancing instancing;
+  instancing.translation = attributes.index("TRANSLATION", accessors);
+  instancing.rotation = attributes.index("ROTATION", accessors);
+  instancing.scale = attributes.index("SCALE", accessors);
+  std::optional<uint64_t> count;
+  for (const std::string& name : attributes.keys()) {
+    const uint64_t its = document.accessors[attributes.requiredIndex(name.c_str(), accessors)].count;
+    if (count && *count != its) {
+      attributes.fail(name, fmt::format("{} elements, another attribute has {}", its, *count));
+    }
+    count = its;
   }
-  if (translation) result[3] = {(*translation)[0], (*translation)[1], (*translation)[2], 1.0};
-  return result;
+  if (!count) attributes.fail("expected TRANSLATION, ROTATION or SCALE");
+  instancing.count = *count;
+  return instancing;
 }
 
 GltfNode readNode(const JsonObject& object, const GltfDocument& document, size_t nodes) {
@@ -254,17 +344,17 @@ GltfNode readNode(const JsonObject& object, const GltfDocument& document, size_t
   node.visible = !visibility || visibility->boolean("visible", true);
   node.children = object.indices("children", nodes);
   node.local = readTransform(object);
-  const auto extensions = object.object("extensions");
-  if (extensions && extensions->has("EXT_mesh_gpu_instancing")) {
-    object.fail("EXT_mesh_gpu_instancing is not supported; convert the file without it");
-  }
+  node.instancing = readInstancing(object, document);
+  const auto lod = extensionOf(object, "MSFT_lod");
+  if (lod) node.coarser = lod->indices("ids", nodes);
   return node;
 }
 
 std::vector<size_t> readRoots(const JsonObject& document, const std::vector<GltfNode>& nodes) {
   const std::vector<JsonObject> scenes = document.objects("scenes");
-  const std::optional<size_t> chosen = document.index("scene", scenes.size());
-  if (!scenes.empty()) return scenes[chosen.value_or(0)].indices("nodes", nodes.size());
+  if (!scenes.empty()) {  // some files name a scene without having one
+    return scenes[document.index("scene", scenes.size()).value_or(0)].indices("nodes", nodes.size());
+  }
   std::vector<bool> is_child(nodes.size(), false);
   for (const GltfNode& node : nodes) {
     for (const size_t child : node.children) is_child[child] = true;
@@ -278,9 +368,27 @@ std::vector<size_t> readRoots(const JsonObject& document, const std::vector<Gltf
 
 }  // namespace
 
-GltfDocument readGltfDocument(const nlohmann::json& root, const std::string& file) {
+glm::dmat4 gltfPlace(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale) {
+  glm::dmat4 m(1.0);
+  if (rotation != glm::dvec4(0.0)) {
+    const double x = rotation.x;
+    const double y = rotation.y;
+    const double z = rotation.z;
+    const double w = rotation.w;
+    const double s = 2.0 / (x * x + y * y + z * z + w * w);
+    m[0] = {1.0 - s * (y * y + z * z), s * (x * y + z * w), s * (x * z - y * w), 0.0};
+    m[1] = {s * (x * y - z * w), 1.0 - s * (x * x + z * z), s * (y * z + x * w), 0.0};
+    m[2] = {s * (x * z + y * w), s * (y * z - x * w), 1.0 - s * (x * x + y * y), 0.0};
+  }
+  for (int i = 0; i < 3; ++i) m[i] *= scale[i];
+  m[3] = glm::dvec4(translation, 1.0);
+  return m;
+}
+
+GltfDocument readGltfDocument(const nlohmann::json& root, const std::string& file,
+                              const std::vector<std::string>& ignored) {
   const JsonObject document(root, file, "");
-  checkRequirements(document);
+  checkRequirements(document, ignored);
   GltfDocument result;
   for (const JsonObject& object : document.objects("buffers")) result.buffers.push_back(readBuffer(object));
   for (const JsonObject& object : document.objects("bufferViews")) {
@@ -294,16 +402,25 @@ GltfDocument readGltfDocument(const nlohmann::json& root, const std::string& fil
     result.images = readImages(document, result.views.size());
   }
   for (const JsonObject& object : document.objects("meshes")) {
-    result.meshes.push_back(readMesh(object, result.accessors.size(), materials));
+    result.meshes.push_back(readMesh(object, result, materials));
   }
   const std::vector<JsonObject> nodes = document.objects("nodes");
   for (const JsonObject& object : document.objects("skins")) {
     result.skins.push_back(readSkin(object, result.accessors.size(), nodes.size()));
   }
+  uint64_t zero_rotations = 0;
   for (const JsonObject& object : nodes) {
     result.nodes.push_back(readNode(object, result, nodes.size()));
+    zero_rotations += hasZeroRotation(object) ? 1 : 0;
+  }
+  if (zero_rotations != 0) {
+    result.warnings.push_back(
+        fmt::format("nodes whose rotation is a quaternion of zeros, not turned: {}", zero_rotations));
   }
   result.roots = readRoots(document, result.nodes);
+  const auto rtc = extensionOf(document, "CESIUM_RTC");
+  const auto center = rtc ? rtc->numbers("center", 3) : std::nullopt;
+  if (center) result.center = {(*center)[0], (*center)[2], -(*center)[1]};  // it has z up
   return result;
 }
 

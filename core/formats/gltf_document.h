@@ -19,10 +19,11 @@ struct GltfBuffer {
   uint64_t byte_length = 0;
 };
 
-/// EXT_meshopt_compression of a buffer view.
+/// EXT_meshopt_compression or KHR_meshopt_compression of a buffer view.
 struct GltfCompression {
   enum class Mode { kAttributes, kTriangles, kIndices };
-  enum class Filter { kNone, kOctahedral, kQuaternion, kExponential };
+  enum class Filter { kNone, kOctahedral, kQuaternion, kExponential, kColor };
+  const char* extension = "";  ///< its name
   size_t buffer = 0;
   uint64_t byte_offset = 0;
   uint64_t byte_length = 0;
@@ -69,6 +70,12 @@ struct GltfAccessor {
   std::optional<GltfSparse> sparse;
 };
 
+/// KHR_draco_mesh_compression: a stream that stands for accessors without data of their own.
+struct GltfDraco {
+  size_t view = 0;
+  std::vector<std::pair<size_t, uint32_t>> attributes;  ///< accessors, and their numbers in the stream
+};
+
 struct GltfPrimitive {
   std::optional<size_t> positions;  ///< accessor
   std::optional<size_t> indices;    ///< accessor
@@ -76,6 +83,7 @@ struct GltfPrimitive {
   std::optional<size_t> mask_uv;               ///< accessor: TEXCOORD_n of the material's alpha texture
   std::vector<std::optional<size_t>> targets;  ///< accessor of each morph target's POSITION
   std::vector<size_t> joints, weights;         ///< accessors JOINTS_0, ..., WEIGHTS_0, ...: as many of either
+  std::optional<GltfDraco> draco;              ///< only where an accessor needs it
   uint32_t mode = 4;                           ///< 4 triangles, 5 strip, 6 fan; below: points and lines
 };
 
@@ -90,6 +98,12 @@ struct GltfSkin {
   std::optional<size_t> inverse_bind;  ///< accessor; without: identity
 };
 
+/// EXT_mesh_gpu_instancing: accessors of as many elements as the node's mesh has instances.
+struct GltfInstancing {
+  std::optional<size_t> translation, rotation, scale;
+  uint64_t count = 0;
+};
+
 struct GltfNode {
   std::string name;
   std::optional<size_t> mesh;
@@ -97,7 +111,9 @@ struct GltfNode {
   std::optional<std::vector<double>> weights;  ///< in place of the mesh's
   bool visible = true;                         ///< KHR_node_visibility; holds for the children too
   std::vector<size_t> children;
-  glm::dmat4 local{1.0};  ///< to the parent's space
+  std::optional<GltfInstancing> instancing;
+  std::vector<size_t> coarser;  ///< MSFT_lod: nodes that take its place farther away
+  glm::dmat4 local{1.0};        ///< to the parent's space
 };
 
 struct GltfDocument {
@@ -110,9 +126,17 @@ struct GltfDocument {
   std::vector<GltfNode> nodes;
   std::vector<size_t> roots;  ///< nodes of the default scene; the first scene if none is named; without
                               ///< scenes every node that is no other's child
+  glm::dvec3 center{0.0};     ///< of CESIUM_RTC, y up: added to all coordinates
+  std::vector<std::string> warnings;
 };
 
-/// Reads and checks the document. Errors name file and place: "a.gltf: accessors[3].count: ...".
-GltfDocument readGltfDocument(const nlohmann::json& document, const std::string& file);
+/// The matrix of a translation, a rotation by the quaternion x, y, z, w, and a scale. A quaternion that is
+/// not quite unit is scaled to it; one of zeros turns nothing.
+glm::dmat4 gltfPlace(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale);
+
+/// Reads and checks the document. Errors name file and place: "a.gltf: accessors[3].count: ...". ignored:
+/// extensions that may be required although they are unknown.
+GltfDocument readGltfDocument(const nlohmann::json& document, const std::string& file,
+                              const std::vector<std::string>& ignored = {});
 
 }  // namespace sightline

@@ -57,7 +57,7 @@ GltfVertexSource GltfVertices::source(const GltfInstance& instance, const GltfPr
     if (primitive.targets[i] && weights[i] != 0.0)
       source.targets.emplace_back(*primitive.targets[i], std::bit_cast<uint64_t>(weights[i]));
   }
-  source.to_world = bitsOf(node.skin ? glm::dmat4(1.0) : *tree_.to_world[instance.node]);
+  source.to_world = bitsOf(node.skin ? tree_.world : instance.to_world);
   if (node.skin && !primitive.joints.empty()) {
     source.skin = node.skin;
     source.joints = primitive.joints;
@@ -205,8 +205,8 @@ const GltfVertexRun& GltfVertices::add(const GltfVertexSource& source) {
       run.mirrored_by_skin.push_back(mirrors(to_world));
     }
     if (!identity) position = glm::dvec3(to_world * glm::dvec4(position, 1.0));  // keeps -0.0 and every bit
-    builder_.addPosition(glm::vec3(position), position,
-                         [&] { return fmt::format("{}, element {}", accessorPlace(source.positions), i); });
+    builder_.addPlaced(position,
+                       [&] { return fmt::format("{}, element {}", accessorPlace(source.positions), i); });
   }
   return run;
 }

@@ -40,7 +40,15 @@ void JsonObject::fail(const std::string& key, const std::string& what) const {
 
 const json* JsonObject::find(const char* key) const {
   const auto found = value_->find(key);
-  return found == value_->end() ? nullptr : &*found;
+  return found == value_->end() || found->is_null() ? nullptr : &*found;
+}
+
+std::vector<std::string> JsonObject::keys() const {
+  std::vector<std::string> names;
+  for (const auto& [key, value] : value_->items()) {
+    if (!value.is_null()) names.push_back(key);
+  }
+  return names;
 }
 
 const json* JsonObject::list(const char* key) const {
@@ -73,6 +81,11 @@ std::optional<size_t> JsonObject::index(const char* key, size_t size) const {
 size_t JsonObject::requiredIndex(const char* key, size_t size) const {
   if (!has(key)) fail(fmt::format("key \"{}\" is missing", key));
   return *index(key, size);
+}
+
+bool JsonObject::isNumber(const char* key) const {
+  const json* value = find(key);
+  return value != nullptr && value->is_number();
 }
 
 std::optional<double> JsonObject::real(const char* key) const {

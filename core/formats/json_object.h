@@ -8,14 +8,16 @@
 namespace sightline {
 
 /// A JSON object with its place in a document, for messages: "a.gltf: accessors[3].count: expected ...".
-/// Getters throw Error for a value of another type; a missing key gives nothing, or, in the variants that
-/// return a plain value without default, an Error.
+/// Getters throw Error for a value of another type; a missing key, and one whose value is null, gives
+/// nothing, or, in the variants that return a plain value without default, an Error.
 class JsonObject {
  public:
   /// Throws Error unless `value` is an object. Keeps a reference to it.
   JsonObject(const nlohmann::json& value, std::string file, std::string place);
 
-  bool has(const char* key) const { return value_->contains(key); }
+  bool has(const char* key) const { return find(key) != nullptr; }
+  /// In the order of their bytes.
+  std::vector<std::string> keys() const;
   [[noreturn]] void fail(const std::string& what) const;
   [[noreturn]] void fail(const std::string& key, const std::string& what) const;
 
@@ -25,6 +27,7 @@ class JsonObject {
   /// An index into a list of `size` elements.
   std::optional<size_t> index(const char* key, size_t size) const;
   size_t requiredIndex(const char* key, size_t size) const;
+  bool isNumber(const char* key) const;
   /// Any number.
   std::optional<double> real(const char* key) const;
   std::optional<std::string> text(const char* key) const;

@@ -72,7 +72,52 @@ class StrictReader : public nlohmann::json_sax<nlohmann::json> {
   std::vector<std::set<std::string>> keys_;  ///< of the objects and lists that are open
 };
 
+/// Whether it is how some program prints a number that is none: NaN, -inf, nan(ind), 1.#QNAN, ...
+bool isNumberWord(std::string_view token) {
+  if (token.starts_with('-') || token.starts_with('+')) token.remove_prefix(1);
+  std::string lower(token.substr(0, 16));
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? char(c + 'a' - 'A') : c;
+  return token.size() <= 16 && (lower == "nan" || lower == "inf" || lower == "infinity" ||
+                                lower.starts_with("nan(") || lower.starts_with("1.#"));
+}
+
+/// The text with null in the place of each such word outside of strings, and their number.
+std::pair<std::string, uint64_t> withoutNumberWords(std::string_view text) {
+  constexpr std::string_view kBetween = " \t\r\n,:[]{}\"";
+  std::string result;
+  uint64_t words = 0;
+  bool in_string = false;
+  for (size_t i = 0; i < text.size();) {
+    const char c = text[i];
+    if (in_string || kBetween.find(c) != std::string_view::npos) {
+      if (c == '"') in_string = !in_string;
+      const size_t length = in_string && c == '\\' ? 2 : 1;
+      result += text.substr(i, length);
+      i += length;
+      continue;
+    }
+    const std::string_view token = text.substr(i, text.find_first_of(kBetween, i) - i);
+    const bool word = isNumberWord(token);
+    result += word ? std::string_view("null") : token;
+    words += word ? 1 : 0;
+    i += token.size();
+  }
+  return {std::move(result), words};
+}
+
 }  // namespace
+
+nlohmann::json parseJsonWithWords(std::string_view text, const std::string& file, uint64_t& words) {
+  words = 0;
+  try {
+    return parseJson(text, file);
+  } catch (const Error&) {
+    const auto [changed, found] = withoutNumberWords(text);
+    if (found == 0) throw;
+    words = found;
+    return parseJson(changed, file);
+  }
+}
 
 nlohmann::json parseJson(std::string_view text, const std::string& file) {
   using nlohmann::json;

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/formats/draco_stream.h"
 #include "core/formats/glb.h"
 #include "core/formats/gltf_alpha.h"
 #include "core/formats/gltf_data.h"
@@ -35,21 +36,36 @@ constexpr uint64_t kStepsAnObject = 64;    ///< as long as naming and placing it
 constexpr uint64_t kNameBytesAStep = 16;   ///< an object's name is memory too
 constexpr uint64_t kStepsAnInfluence = 8;  ///< to blend four joints' matrices
 
+glm::dmat4 translation(const glm::dvec3& by) {
+  glm::dmat4 matrix(1.0);
+  matrix[3] = glm::dvec4(by, 1.0);
+  return matrix;
+}
+
 class GltfLoader {
  public:
-  GltfLoader(const GltfDocument& document, uint64_t file_bytes, GltfData& data, const std::string& name,
-             const SceneLoadOptions& options)
+  /// Changes the document: what is compressed gets views of its own.
+  GltfLoader(GltfDocument& document, uint64_t file_bytes, GltfData& data, const std::string& name,
+             const SceneLoadOptions& options, const GltfWorld& world)
       : document_(document),
         file_bytes_(file_bytes),
         data_(data),
         name_(name),
         options_(options),
-        builder_(options),
-        tree_(readTree(document, name)),
+        world_(world.parent),
+        builder_(options, world.offset),
         vertices_(document, tree_, data, name, builder_),
-        alpha_(document, data, name, options, builder_.surfaces()) {}
+        alpha_(document, data, name, options, builder_.surfaces()) {
+    world_ *= translation(document.center);
+    world_[3] -= glm::dvec4(world.offset, 0.0);
+  }
 
   Scene load() {
+    tree_ = readTree(document_, data_, name_,
+                     {.world = world_, .repair = builder_.repairs(), .instances = [this](uint64_t count) {
+                        spend(count * kStepsAnObject);
+                      }});
+    decodeDracoMeshes();
     findMeshes();
     reserve();
     for (const GltfInstance& instance : tree_.instances) {
@@ -142,7 +158,7 @@ class GltfLoader {
   }
 
   Placement placementOf(const GltfInstance& instance) const {
-    const glm::dmat4& to_world = *tree_.to_world[instance.node];
+    const glm::dmat4& to_world = instance.to_world;
     const auto column = [&](int i) { return vec4(glm::vec3(to_world[i]), 0.0f); };
     return {column(0), column(1), column(2), column(3)};
   }
@@ -150,7 +166,7 @@ class GltfLoader {
   /// The mesh in its own space. Only vertices that its triangles use.
   void readMesh(const GltfInstance& instance, SharedMesh& mesh) {
     mesh.read = true;
-    SceneBuilder builder(options_);
+    SceneBuilder builder(options_, glm::dvec3(0.0));
     GltfVertices vertices(document_, tree_, data_, name_, builder);
     into_ = &builder;
     from_ = &vertices;
@@ -221,6 +237,51 @@ class GltfLoader {
       const uint64_t name_bytes = document_.nodes[instance.node].name.size() + mesh.name.size();
       spend(mesh.primitives.size() * (kStepsAnObject + name_bytes / kNameBytesAStep));
     }
+  }
+
+  void decodeDracoMeshes() {
+    std::vector<bool> done(document_.meshes.size(), false);
+    for (const GltfInstance& instance : tree_.instances) {
+      if (done[instance.mesh]) continue;
+      done[instance.mesh] = true;
+      for (size_t i = 0; i < document_.meshes[instance.mesh].primitives.size(); ++i)
+        decodeDraco(instance.mesh, i);
+    }
+  }
+
+  /// Puts what the primitive's stream holds into the place of the accessors that have no data.
+  void decodeDraco(size_t mesh, size_t index) {
+    const GltfPrimitive& primitive = document_.meshes[mesh].primitives[index];
+    if (!primitive.draco) return;
+    const std::string place = fmt::format(
+        "{}: meshes[{}].primitives[{}].extensions.KHR_draco_mesh_compression", name_, mesh, index);
+    if (!primitive.indices) throw Error(fmt::format("{}: the primitive has no indices", place));
+    std::vector<size_t> accessors;
+    DracoWish wish;
+    for (const auto& [accessor, number] : primitive.draco->attributes) {
+      const GltfAccessor& its = document_.accessors[accessor];
+      if (its.view) continue;  // of a primitive that shares it
+      accessors.push_back(accessor);
+      wish.attributes.push_back({number, its.component, its.width});
+    }
+    const bool wants_indices = !document_.accessors[*primitive.indices].view;
+    if (accessors.empty() && !wants_indices) return;
+    wish.corner_component = document_.accessors[*primitive.indices].component;
+    DracoData decoded = sightline::decodeDraco(data_.view(primitive.draco->view), wish, place);
+    spend(decoded.points + decoded.corners);
+    for (size_t i = 0; i < accessors.size(); ++i) {
+      replace(accessors[i], decoded.points, std::move(decoded.attributes[i]));
+    }
+    if (wants_indices) replace(*primitive.indices, decoded.corners, std::move(decoded.corner_points));
+  }
+
+  void replace(size_t accessor, uint64_t count, std::vector<uint8_t> bytes) {
+    GltfAccessor& its = document_.accessors[accessor];
+    if (its.count != count) ++other_counts_;
+    its.view = data_.addView(document_, std::move(bytes));
+    its.byte_offset = 0;
+    its.count = count;
+    its.sparse.reset();
   }
 
   /// Vertices of masked primitives get places in the mask's image, a list a primitive.
@@ -388,6 +449,7 @@ class GltfLoader {
     std::string name = cleanName(document_.nodes[instance.node].name);
     const std::string mesh_name = cleanName(mesh.name);
     if (name.empty()) name = fmt::format("node_{}", instance.node);
+    if (instance.copy) name += fmt::format("#{}", *instance.copy);
     if (!mesh_name.empty() && mesh_name != name) name += "/" + mesh_name;
     if (mesh.primitives.size() > 1) name += fmt::format("/{}", primitive);
     into_->beginObject(name, name,
@@ -396,9 +458,11 @@ class GltfLoader {
 
   void warn() {
     builder_.countHiddenNodes(tree_.hidden_nodes);
-    if (tree_.hidden_nodes != 0) {
-      builder_.warn(fmt::format("invisible nodes (KHR_node_visibility), left out with all below them: {}",
-                                tree_.hidden_nodes));
+    for (const std::string& warning : document_.warnings) builder_.warn(warning);
+    for (const std::string& warning : tree_.warnings) builder_.warn(warning);
+    if (other_counts_ != 0) {
+      builder_.warn(fmt::format("accessors whose count is not that of their Draco stream, which holds: {}",
+                                other_counts_));
     }
     if (unbound_ != 0) {
       builder_.warn(fmt::format(
@@ -410,12 +474,13 @@ class GltfLoader {
     }
   }
 
-  const GltfDocument& document_;
+  GltfDocument& document_;
   const uint64_t file_bytes_;
   uint64_t steps_ = 0;
   GltfData& data_;
   const std::string& name_;
   SceneLoadOptions options_;
+  glm::dmat4 world_;  ///< from the document's space to the scene's
   SceneBuilder builder_;
   GltfTree tree_;
   GltfVertices vertices_;
@@ -425,26 +490,33 @@ class GltfLoader {
   // Where primitives are added: to the scene, or to a mesh.
   SceneBuilder* into_ = &builder_;
   GltfVertices* from_ = &vertices_;
-  uint64_t unbound_ = 0;  ///< primitives of skinned nodes without joints
+  uint64_t other_counts_ = 0;  ///< accessors whose Draco stream has another count
+  uint64_t unbound_ = 0;       ///< primitives of skinned nodes without joints
 };
-
-Scene loadDocument(std::string_view text, std::string_view bin, const std::filesystem::path& file,
-                   const SceneLoadOptions& options) {
-  const std::string name = file.string();
-  const GltfDocument document = readGltfDocument(parseJson(text, name), name);
-  GltfData data(document, bin, file);
-  return GltfLoader(document, text.size() + bin.size(), data, name, options).load();
-}
 
 }  // namespace
 
-Scene loadGltf(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
-  return loadDocument(bytes.view(), {}, file, options);
+Scene loadGltfDocument(const Glb& chunks, const std::filesystem::path& file, const SceneLoadOptions& options,
+                       const GltfWorld& world) {
+  const std::string name = file.string();
+  uint64_t words = 0;
+  GltfDocument document =
+      readGltfDocument(parseJsonWithWords(chunks.json, name, words), name, options.ignored_extensions);
+  if (words != 0)
+    document.warnings.push_back(fmt::format("words in the place of numbers (NaN), not read: {}", words));
+  document.warnings.insert(document.warnings.end(), chunks.warnings.begin(), chunks.warnings.end());
+  GltfData data(document, chunks.bin, file, options.allow_external);
+  return GltfLoader(document, chunks.json.size() + chunks.bin.size(), data, name, options, world).load();
 }
 
-Scene loadGlb(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
-  const Glb glb = splitGlb(bytes.view(), file.string());
-  return loadDocument(glb.json, glb.bin, file, options);
+Scene loadGltf(std::string_view bytes, const std::filesystem::path& file, const SceneLoadOptions& options,
+               const glm::dvec3& offset) {
+  return loadGltfDocument({bytes, {}, {}}, file, options, {.offset = offset});
+}
+
+Scene loadGlb(std::string_view bytes, const std::filesystem::path& file, const SceneLoadOptions& options,
+              const glm::dvec3& offset) {
+  return loadGltfDocument(splitGlb(bytes, file.string()), file, options, {.offset = offset});
 }
 
 }  // namespace sightline

@@ -83,14 +83,20 @@ struct ForwardReference : std::exception {};
 
 class ObjReader {
  public:
-  ObjReader(std::string_view text, const std::filesystem::path& file, const SceneLoadOptions& options)
-      : text_(text), file_(file), name_(file.string()), options_(options), builder_(options) {}
+  ObjReader(std::string_view text, const std::filesystem::path& file, const SceneLoadOptions& options,
+            const glm::dvec3& offset)
+      : text_(text),
+        file_(file),
+        name_(file.string()),
+        options_(options),
+        offset_(offset),
+        builder_(options, offset) {}
 
   Scene read() {
     try {
       parse(true, true);
     } catch (const ForwardReference&) {
-      builder_ = SceneBuilder(options_);
+      builder_ = SceneBuilder(options_, offset_);
       parse(true, false);
       all_vertices_known_ = true;
       parse(false, true);
@@ -134,11 +140,21 @@ class ObjReader {
     glm::dvec3 full;
     for (int i = 0; i < 3; ++i) {
       const std::optional<Decimal> coordinate = takeDecimal(rest);
-      if (!coordinate) throw Error(fmt::format("{}: expected three numbers after \"v\"", place()));
+      if (!coordinate) failAtNumber(rest);
       position[i] = coordinate->single;
       full[i] = coordinate->full;
     }
     builder_.addPosition(position, full, [this] { return place(); });
+  }
+
+  [[noreturn]] void failAtNumber(std::string_view rest) const {
+    const std::string_view word = takeWord(rest);
+    const bool comma = word.find(',') != std::string_view::npos;
+    throw Error(
+        fmt::format("{}: expected three numbers after \"v\"{}", place(),
+                    comma ? fmt::format(", with decimal points, and found \"{}\"; replace commas by points",
+                                        cleanName(word.substr(0, 40)))
+                          : ""));
   }
 
   /// Any statement but "v".
@@ -212,7 +228,7 @@ class ObjReader {
   std::set<std::string> filesOf(std::string library) const {
     std::replace(library.begin(), library.end(), '\\', '/');  // as Windows writes it
     std::error_code ignored;
-    const auto whole = besideScene(file_, library);
+    const auto whole = besideScene(file_, library, options_.allow_external);
     if (whole && std::filesystem::is_regular_file(*whole, ignored)) return {library};
     std::set<std::string> files;
     std::string_view rest = library;
@@ -230,9 +246,10 @@ class ObjReader {
     for (const std::string& library : libraries_) names.merge(filesOf(library));
     for (const std::string& name : names) {
       try {
-        const auto file = besideScene(file_, name);
+        const auto file = besideScene(file_, name, options_.allow_external);
         if (!file)
-          throw Error(fmt::format("{}: {} lies outside of the scene's folder", name_, cleanName(name)));
+          throw Error(fmt::format("{}: {} lies outside of the scene's folder (--allow-external)", name_,
+                                  cleanName(name)));
         listSeeThrough(readFile(*file).view(), see_through);
       } catch (const Error& error) {
         problems.emplace_back(error.what());
@@ -270,6 +287,7 @@ class ObjReader {
   const std::filesystem::path& file_;
   const std::string name_;
   const SceneLoadOptions& options_;
+  const glm::dvec3& offset_;
   SceneBuilder builder_;
   ObjLines* lines_ = nullptr;
   int64_t vertices_so_far_ = 0;
@@ -287,8 +305,9 @@ class ObjReader {
 
 }  // namespace
 
-Scene loadObj(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
-  return ObjReader(bytes.view(), file, options).read();
+Scene loadObj(std::string_view bytes, const std::filesystem::path& file, const SceneLoadOptions& options,
+              const glm::dvec3& offset) {
+  return ObjReader(bytes, file, options, offset).read();
 }
 
 }  // namespace sightline

@@ -88,41 +88,66 @@ class NumberReader {
   PlyFormat format_;
 };
 
+/// Thrown to repair where rows of faces are missing at the file's end.
+struct RowsEnd : std::exception {};
+
 class PlyReader {
  public:
-  PlyReader(std::string_view bytes, const std::string& name, const SceneLoadOptions& options)
+  PlyReader(std::string_view bytes, const std::string& name, const SceneLoadOptions& options,
+            const glm::dvec3& offset)
       : name_(name),
         header_(readPlyHeader(bytes, name)),
         numbers_(bytes.substr(header_.data_offset), header_.format),
-        builder_(options) {
+        builder_(options, offset) {
     if (options.cull_back_faces) builder_.beginSurface(kSurfaceFrontOnly);
   }
 
   Scene read(const std::string& object) {
     builder_.beginObject(object, "ply");
+    std::vector<std::pair<const PlyElement*, NumberReader>>
+        early;  // faces before the vertices, and their rows
     bool has_vertices = false;
     for (const PlyElement& element : header_.elements) {
+      if (ended_) break;
       element_ = &element;
-      if (element.name == "vertex") {
+      const bool faces = element.name == "face" || element.name == "tristrips";
+      if (element.name == "vertex" && !has_vertices) {
         has_vertices = true;
         readVertices();
-      } else if (element.name == "face" || element.name == "tristrips") {
-        if (!has_vertices)
-          throw Error(fmt::format("{}: element {} stands before the vertices", name_, element.name));
-        readFaces(element.name == "tristrips");
+        readEarly(early);
+      } else if (faces && has_vertices) {
+        readFaces();
       } else {
+        if (faces) early.emplace_back(&element, numbers_);
         skipElement();
       }
     }
+    if (!has_vertices && !early.empty()) throw Error(fmt::format("{}: has faces, but no vertices", name_));
     return builder_.finish(name_);
   }
 
  private:
+  void readEarly(const std::vector<std::pair<const PlyElement*, NumberReader>>& early) {
+    const NumberReader behind = numbers_;
+    for (const auto& [element, rows] : early) {
+      element_ = element;
+      numbers_ = rows;
+      readFaces();
+    }
+    numbers_ = behind;
+  }
+
   std::string place() const { return fmt::format("{}: element {}, row {}", name_, element_->name, row_); }
 
+  bool isFace() const { return element_->name == "face"; }
+
   [[noreturn]] void failAt(const PlyProperty& property) const {
+    if (numbers_.atEnd() && may_end_) throw RowsEnd();
     throw Error(fmt::format("{}: property {}: {}", place(), property.name,
-                            numbers_.atEnd() ? "the file ends here; is it truncated?" : "expected a number"));
+                            !numbers_.atEnd() ? "expected a number"
+                            : !isFace()       ? "the file ends here; is it truncated?"
+                                              : "the file ends here; is it truncated? --repair keeps the "
+                                                "faces before"));
   }
 
   /// How many rows could still come, so that memory follows the file's size and not its claims.
@@ -157,7 +182,8 @@ class PlyReader {
     }
   }
 
-  void readFaces(bool strips) {
+  void readFaces() {
+    const bool strips = element_->name == "tristrips";
     std::optional<size_t> list = element_->find("vertex_indices");
     if (!list) list = element_->find("vertex_index");
     if (!list || !element_->properties[*list].list_size_type) {
@@ -169,13 +195,7 @@ class PlyReader {
     }
     if (!strips) builder_.reserve(0, possibleRows());
     for (row_ = 0; row_ < element_->count; ++row_) {
-      for (size_t i = 0; i < element_->properties.size(); ++i) {
-        if (i == *list) {
-          readCorners(element_->properties[i]);
-        } else {
-          skipOrRead(element_->properties[i]);
-        }
-      }
+      if (!readFace(*list)) return;
       const VertexRange vertices{0, int64_t(builder_.positionCount()), 0};
       if (strips) {
         addStrips(vertices);
@@ -183,6 +203,27 @@ class PlyReader {
         builder_.nextFace();
         builder_.addPolygon(corners_, vertices, [this] { return place(); });
       }
+    }
+  }
+
+  /// Reads the corners of a row, whose list they are; false, to repair, where the file ends.
+  bool readFace(size_t list) {
+    may_end_ = isFace() && builder_.repairs();
+    try {
+      for (size_t i = 0; i < element_->properties.size(); ++i) {
+        if (i == list) {
+          readCorners(element_->properties[i]);
+        } else {
+          skipOrRead(element_->properties[i]);
+        }
+      }
+      may_end_ = false;
+      return true;
+    } catch (const RowsEnd&) {
+      ended_ = true;
+      builder_.warn(
+          fmt::format("the header promises {} faces, the file ends after {}", element_->count, row_));
+      return false;
     }
   }
 
@@ -207,6 +248,7 @@ class PlyReader {
     if (!size) failAt(property);
     const uint64_t item_bytes = numbers_.isBinary() ? plyTypeBytes(property.type) : 2;
     if (*size < 0 || uint64_t(*size) > (numbers_.bytesLeft() + 1) / item_bytes) {
+      if (may_end_) throw RowsEnd();
       throw Error(fmt::format("{}: property {}: a list of {} values does not fit the {} bytes left", place(),
                               property.name, *size, numbers_.bytesLeft()));
     }
@@ -248,14 +290,19 @@ class PlyReader {
   SceneBuilder builder_;
   const PlyElement* element_ = nullptr;
   uint64_t row_ = 0;
+  bool may_end_ = false;  ///< rows may be missing: faces are read, to repair
+  bool ended_ = false;    ///< they were
   std::vector<int64_t> corners_;
 };
 
 }  // namespace
 
-Scene loadPly(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
+Scene loadPly(std::string_view bytes, const std::filesystem::path& file, const SceneLoadOptions& options,
+              const glm::dvec3& offset) {
   const std::string name = file.string();
-  return PlyReader(bytes.view(), name, options).read(file.stem().string());
+  constexpr std::string_view kMark = "\xef\xbb\xbf";
+  if (bytes.starts_with(kMark)) bytes.remove_prefix(kMark.size());
+  return PlyReader(bytes, name, options, offset).read(file.stem().string());
 }
 
 }  // namespace sightline

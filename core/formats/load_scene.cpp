@@ -2,30 +2,59 @@
 
 #include <fmt/format.h>
 
-#include <map>
-
 #include "core/base/error.h"
 #include "core/formats/loaders.h"
+#include "core/formats/scene_builder.h"
+#include "core/formats/scene_format.h"
+#include "core/formats/utf16.h"
 
 namespace sightline {
+namespace {
 
-Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options) {
-  using Loader = Scene (*)(FileBytes, const std::filesystem::path&, const SceneLoadOptions&);
-  static const std::map<std::string, Loader> loaders = {
-      {".obj", loadObj}, {".gltf", loadGltf}, {".glb", loadGlb}, {".ply", loadPly}};
-  const std::string extension = lowerExtension(file);
-  const auto loader = loaders.find(extension);
-  if (loader == loaders.end()) {
-    throw Error(fmt::format("{}: unknown extension \"{}\", expected .obj, .gltf, .glb or .ply", file.string(),
-                            extension));
+SceneLoader* loaderOf(std::string_view bytes, const std::filesystem::path& file) {
+  const std::optional<SceneFormat> by_content = formatOfContent(bytes);
+  const std::optional<SceneFormat> format = by_content ? by_content : formatOfName(file);
+  if (!format) {
+    throw Error(fmt::format("{}: unknown extension \"{}\", expected .obj, .gltf, .glb, .ply or .b3dm",
+                            file.string(), lowerExtension(file)));
   }
-  FileBytes bytes = readFile(file);
+  switch (*format) {
+    case SceneFormat::kObj:
+      return loadObj;
+    case SceneFormat::kGltf:
+      return loadGltf;
+    case SceneFormat::kGlb:
+      return loadGlb;
+    case SceneFormat::kPly:
+      return loadPly;
+    case SceneFormat::kB3dm:
+      return loadB3dm;
+  }
+  return loadObj;
+}
+
+}  // namespace
+
+Scene parseScene(FileBytes bytes, const std::filesystem::path& file, const SceneLoadOptions& options) {
   if (bytes.size == 0) throw Error(fmt::format("{}: is empty", file.string()));
   try {
-    return loader->second(std::move(bytes), file, options);
+    const std::string foreign = foreignContent(bytes.view());
+    if (!foreign.empty()) throw Error(fmt::format("{}: {}", file.string(), foreign));
+    if (std::optional<FileBytes> text = fromUtf16(bytes.view())) bytes = std::move(*text);
+    SceneLoader* load = loaderOf(bytes.view(), file);
+    try {
+      return load(bytes.view(), file, options, options.offset.value_or(glm::dvec3(0.0)));
+    } catch (const NeedsOffset& needs) {
+      // Read again, rather than moved, so that each coordinate is rounded once, from all of its digits.
+      return load(bytes.view(), file, options, needs.offset);
+    }
   } catch (const std::bad_alloc&) {
     throw Error(fmt::format("{}: does not fit into memory", file.string()));
   }
+}
+
+Scene loadScene(const std::filesystem::path& file, const SceneLoadOptions& options) {
+  return parseScene(readFile(file), file, options);
 }
 
 }  // namespace sightline

@@ -10,10 +10,20 @@ constexpr std::string_view kBlanks = " \t\r";
 /// What some editors put before UTF-8 text.
 constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
 
+/// Where a comment starts; a '#' behind a point, as in the "1.#QNAN" of some runtimes, is part of a number.
+size_t commentStart(std::string_view line) {
+  size_t at = line.find('#');
+  while (at != std::string_view::npos && at > 0 && line[at - 1] == '.' && at + 1 < line.size() &&
+         line[at + 1] >= 'A' && line[at + 1] <= 'Z') {
+    at = line.find('#', at + 1);
+  }
+  return at;
+}
+
 /// Whether a backslash, and at most blanks behind it, ends the line; not if that belongs to a comment.
 bool isContinued(std::string_view line) {
   const size_t last = line.find_last_not_of(kBlanks);
-  return last != std::string_view::npos && line[last] == '\\' && line.find('#') == std::string_view::npos;
+  return last != std::string_view::npos && line[last] == '\\' && commentStart(line) == std::string_view::npos;
 }
 
 }  // namespace
@@ -42,7 +52,7 @@ bool ObjLines::next() {
   const size_t keyword = line_.find_first_not_of(kBlanks);
   if (keyword == std::string_view::npos || (line_[keyword] != 'v' && line_[keyword] != 'f')) return true;
   if (isContinued(line_)) joinContinued();
-  line_ = line_.substr(0, line_.find('#'));
+  line_ = line_.substr(0, commentStart(line_));
   return true;
 }
 

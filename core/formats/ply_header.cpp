@@ -68,7 +68,8 @@ class HeaderReader {
       const std::vector<std::string_view> words = nextLine();
       if (words.empty()) fail("empty line in the header");
       if (words[0] == "end_header") break;
-      if (words[0] == "comment" || words[0] == "obj_info") continue;
+      // "Created by Blender3D 247 ..." is a comment that its exporter forgot to mark.
+      if (words[0] == "comment" || words[0] == "obj_info" || words[0] == "Created") continue;
       if (words[0] == "element") {
         readElement(words);
       } else if (words[0] == "property") {

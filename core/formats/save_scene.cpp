@@ -72,10 +72,14 @@ struct SavedMesh {
   std::map<std::pair<uint32_t, uint32_t>, size_t> runs;
 };
 
-json matrixOf(const Placement& place) {
+/// offset: of the scene, put back.
+json matrixOf(const Placement& place, const glm::dvec3& offset) {
   json matrix = json::array();
   for (const vec4* column : {&place.x, &place.y, &place.z, &place.origin}) {
-    for (int row = 0; row < 3; ++row) matrix.push_back((*column)[row]);
+    for (int row = 0; row < 3; ++row) {
+      const double value = (*column)[row];
+      matrix.push_back(column == &place.origin ? value + offset[row] : value);
+    }
     matrix.push_back(column == &place.origin ? 1 : 0);
   }
   return matrix;
@@ -136,13 +140,17 @@ json gltfDocument(const Scene& scene, uint64_t position_bytes, uint64_t triangle
                                                    : StoredTriangle{object.first_triangle, kNoTriangle};
     if (at.instance == kNoTriangle) {
       nodes.push_back({{"mesh", addMesh(0, at.triangle, object.triangle_count)}, {"name", object.name}});
+      if (scene.offset != glm::dvec3(0.0)) {
+        nodes.back()["translation"] = {scene.offset.x, scene.offset.y, scene.offset.z};
+      }
       continue;
     }
     const SceneInstance& instance = scene.instances[at.instance];
     SavedMesh& mesh = saved[instance.mesh];
     const auto [run, is_new] = mesh.runs.try_emplace({at.triangle, object.triangle_count}, 0);
     if (is_new) run->second = addMesh(mesh.positions, at.triangle, object.triangle_count);
-    nodes.push_back({{"mesh", run->second}, {"name", object.name}, {"matrix", matrixOf(instance.place)}});
+    nodes.push_back(
+        {{"mesh", run->second}, {"name", object.name}, {"matrix", matrixOf(instance.place, scene.offset)}});
   }
   document["accessors"] = std::move(accessors);
   document["meshes"] = std::move(meshes);
@@ -172,7 +180,13 @@ void writeObj(const Scene& scene, const std::string& name, const WriteText& writ
   if (scene.hasInstances()) return writeObj(flatten(scene), name, write);  // OBJ has none
   for (const glm::vec3& position : scene.positions) {
     writer.text("v");
-    for (int i = 0; i < 3; ++i) writer.number(position[i]);
+    for (int i = 0; i < 3; ++i) {
+      if (scene.offset[i] == 0.0) {
+        writer.number(position[i]);
+      } else {
+        writer.number(double(position[i]) + scene.offset[i]);
+      }
+    }
     writer.text("\n");
   }
   for (const SceneObject& object : scene.objects) {

@@ -15,6 +15,10 @@
 namespace sightline {
 namespace {
 
+/// Bad vertices whose places are kept for messages: they may be all of a file, and faces that use one come
+/// mostly soon.
+constexpr size_t kBadPlaces = 1000;
+
 /// False for NaN too.
 bool isInRange(const glm::vec3& v) {
   return std::abs(v.x) <= kLargestCoordinate && std::abs(v.y) <= kLargestCoordinate &&
@@ -75,6 +79,22 @@ std::string cleanName(std::string_view name) {
 }
 
 void SceneBuilder::addPosition(const glm::vec3& position, const glm::dvec3& full, const Place& place) {
+  if (scene_.offset == glm::dvec3(0.0)) {
+    add(position, full, place);
+  } else {
+    addPlaced(full - scene_.offset, place);
+  }
+}
+
+void SceneBuilder::addPlaced(const glm::dvec3& position, const Place& place) {
+  if (scene_.offset != glm::dvec3(0.0)) {
+    const glm::dvec3 in_file = position + scene_.offset;
+    file_has_floats_ = file_has_floats_ && in_file == glm::dvec3(glm::vec3(in_file));
+  }
+  add(glm::vec3(position), position, place);
+}
+
+void SceneBuilder::add(const glm::vec3& position, const glm::dvec3& full, const Place& place) {
   if (scene_.positions.size() >= kMaxElements) throw Error(fmt::format("{}: too many vertices", place()));
   if (isInRange(position)) {
     const glm::vec3 remainder(full - glm::dvec3(position));
@@ -85,20 +105,25 @@ void SceneBuilder::addPosition(const glm::vec3& position, const glm::dvec3& full
     scene_.positions.push_back(position);
     return;
   }
-  if (!repair_) {
-    const bool finite = std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
-    throw Error(fmt::format(
-        "{}: vertex ({}, {}, {}) is {}; --repair drops its triangles", place(), position.x, position.y,
-        position.z,
-        finite ? "farther than 2^40 from the origin, too far to trace: scale the scene" : "not finite"));
-  }
-  bad_vertices_.push_back(uint32_t(scene_.positions.size()));
+  if (bad_vertices_.size() < kBadPlaces && !repair_) bad_places_.push_back(place());
+  bad_vertices_.emplace_back(uint32_t(scene_.positions.size()), position);
   scene_.positions.emplace_back(0.0f);
 }
 
-bool SceneBuilder::isBadVertex(int64_t index) const {
-  return !bad_vertices_.empty() &&
-         std::binary_search(bad_vertices_.begin(), bad_vertices_.end(), uint32_t(index));
+std::optional<size_t> SceneBuilder::badVertex(int64_t index) const {
+  const auto found = std::lower_bound(bad_vertices_.begin(), bad_vertices_.end(), index,
+                                      [](const auto& bad, int64_t wanted) { return bad.first < wanted; });
+  if (found == bad_vertices_.end() || found->first != index) return std::nullopt;
+  return size_t(found - bad_vertices_.begin());
+}
+
+void SceneBuilder::failAtBadVertex(size_t bad, const Place& face) const {
+  const glm::vec3& position = bad_vertices_[bad].second;
+  const bool finite = std::isfinite(position.x) && std::isfinite(position.y) && std::isfinite(position.z);
+  throw Error(fmt::format(
+      "{}: vertex ({}, {}, {}) is {}; --repair drops its triangles",
+      bad < bad_places_.size() ? bad_places_[bad] : face(), position.x, position.y, position.z,
+      finite ? "farther than 2^40 from the origin, too far to trace: scale the scene" : "not finite"));
 }
 
 void SceneBuilder::closeObject() {
@@ -124,8 +149,11 @@ bool SceneBuilder::usable(std::span<const int64_t> corners, const VertexRange& v
                             corners.size()));
   }
   for (const int64_t corner : corners) {
-    if (corner >= 0 && corner < vertices.count && !isBadVertex(vertices.first + corner)) continue;
+    const bool in_range = corner >= 0 && corner < vertices.count;
+    const std::optional<size_t> bad = in_range ? badVertex(vertices.first + corner) : std::nullopt;
+    if (in_range && !bad) continue;
     if (repair_) return false;
+    if (bad) failAtBadVertex(*bad, place);
     if (vertices.count == 0) throw Error(fmt::format("{}: face without any vertex in the file", place()));
     throw Error(fmt::format("{}: vertex index {} is out of range {}..{}; --repair drops the face", place(),
                             corner + vertices.number_of_first, vertices.number_of_first,
@@ -235,7 +263,11 @@ Scene SceneBuilder::finish(const std::string& file) {
   }
   if (!scene_.surfaces.empty()) scene_.surfaces.words.resize(scene_.triangles.size(), 0u);
   scene_.degenerate_triangles = countDegenerate(scene_);
-  const std::string lost = precisionWarning(scene_, remainders_);
+  if (scene_.offset == glm::dvec3(0.0) && may_need_offset_) {
+    const glm::dvec3 offset = neededOffset(scene_, remainders_);
+    if (offset != glm::dvec3(0.0)) throw NeedsOffset(offset);
+  }
+  const std::string lost = precisionWarning(scene_, remainders_, file_has_floats_);
   if (!lost.empty()) warn(lost);
   return std::move(scene_);
 }

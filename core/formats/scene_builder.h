@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <exception>
 #include <functional>
 #include <optional>
 #include <span>
@@ -28,18 +29,32 @@ struct VertexRange {
   int64_t number_of_first = 0;
 };
 
+/// Thrown to start again: floats do not hold the scene unless this is taken off its coordinates.
+struct NeedsOffset : std::exception {
+  explicit NeedsOffset(const glm::dvec3& needed) : offset(needed) {}
+  glm::dvec3 offset;
+};
+
 /// Collects what a loader reads into a Scene that keeps the invariants. Loaders say where they are by a
 /// function that makes the text of the place ("city.obj:812"), called only for an error.
 class SceneBuilder {
  public:
   using Place = std::function<std::string()>;
 
-  explicit SceneBuilder(const SceneLoadOptions& options)
-      : repair_(options.repair), flatten_(options.flatten), faces_(options.faces) {}
+  /// offset: of the scene that is made.
+  SceneBuilder(const SceneLoadOptions& options, const glm::dvec3& offset)
+      : repair_(options.repair),
+        flatten_(options.flatten),
+        faces_(options.faces),
+        may_need_offset_(!options.offset) {
+    scene_.offset = offset;
+  }
 
-  /// Adds a vertex; `full` is the position as precise as the file has it. Throws Error for a non-finite
-  /// position, or, to repair, marks the vertex: its triangles are dropped.
+  /// Adds a vertex; `full` is the position as precise as the file has it, `position` that rounded to floats
+  /// once. One that is not finite or too far out spoils the triangles that use it.
   void addPosition(const glm::vec3& position, const glm::dvec3& full, const Place& place);
+  /// The same of a position that the offset has been taken off already.
+  void addPlaced(const glm::dvec3& position, const Place& place);
   uint64_t positionCount() const { return scene_.positions.size(); }
 
   /// Following triangles belong to an object of that name. An empty or blank name becomes `fallback`.
@@ -89,7 +104,7 @@ class SceneBuilder {
   void reserve(uint64_t positions, uint64_t triangles);
 
   /// The scene, with the degenerate triangles counted and a warning if single precision spoils it. Throws
-  /// Error without any triangle.
+  /// Error without any triangle, and NeedsOffset if the scene has no offset yet.
   Scene finish(const std::string& file);
 
  private:
@@ -101,16 +116,22 @@ class SceneBuilder {
   void joinMeshes();
   void addTriangle(const glm::uvec3& triangle, const Place& place);
   bool usable(std::span<const int64_t> corners, const VertexRange& vertices, const Place& place) const;
-  bool isBadVertex(int64_t index) const;
+  void add(const glm::vec3& position, const glm::dvec3& full, const Place& place);
+  /// Which of the bad vertices it is, if it is one.
+  std::optional<size_t> badVertex(int64_t index) const;
+  [[noreturn]] void failAtBadVertex(size_t bad, const Place& face) const;
   void closeObject();
 
   bool repair_, flatten_;
   bool faces_;
+  bool may_need_offset_;
   uint32_t face_ = ~0u;  ///< wraps to 0 with the first; only faces without triangles can be more than 2^32
   Scene scene_;
   SceneObject object_;
   uint32_t surface_ = 0;
-  std::vector<uint32_t> bad_vertices_;  ///< ascending; only to repair
+  std::vector<std::pair<uint32_t, glm::vec3>> bad_vertices_;  ///< not finite or too far out; ascending
+  std::vector<std::string> bad_places_;                       ///< where the first of them stand in the file
+  bool file_has_floats_ = true;                               ///< looked at only with an offset
   std::vector<glm::vec3>
       remainders_;                  ///< what positions lost by rounding; shorter if the others lost nothing
   std::vector<glm::vec3> corners_;  ///< of the polygon in work

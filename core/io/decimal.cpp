@@ -1,5 +1,6 @@
 #include "core/io/decimal.h"
 
+#include <algorithm>
 #include <bit>
 #include <cfloat>
 #include <charconv>
@@ -11,6 +12,17 @@ namespace {
 
 bool isBlank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n' || c == '\v' || c == '\f';
+}
+
+/// What Microsoft's runtimes print behind "1." for numbers that are none, as in "1.#QNAN0": its value, cut
+/// off the text; nothing where it does not start so.
+std::optional<double> takeNoNumber(std::string_view& text) {
+  for (const std::string_view word : {"#QNAN", "#SNAN", "#IND", "#INF", "#NAN"}) {
+    if (!text.starts_with(word)) continue;
+    text.remove_prefix(std::min(text.find_first_not_of("0123456789", word.size()), text.size()));
+    return word == "#INF" ? HUGE_VAL : double(NAN);
+  }
+  return std::nullopt;
 }
 
 /// A number beyond double: std::from_chars does not tell which end was passed.
@@ -43,13 +55,19 @@ std::optional<Decimal> takeDecimal(std::string_view& text) {
   Decimal value;
   const auto result = std::from_chars(first, last, value.full);
   if (result.ec == std::errc::invalid_argument) return std::nullopt;
-  if (result.ptr != last && !isBlank(*result.ptr)) return std::nullopt;
+  std::string_view rest(result.ptr, size_t(last - result.ptr));
+  const auto no_number = takeNoNumber(rest);
+  if (!rest.empty() && !isBlank(rest.front())) return std::nullopt;
+  if (no_number) {
+    text = rest;
+    return Decimal{float(*no_number), *no_number};
+  }
   if (result.ec == std::errc::result_out_of_range) {
     value.full = outOfRange({first, size_t(result.ptr - first)});
   }
   value.single = float(value.full);
   if (needsText(value.full)) std::from_chars(first, last, value.single);  // unchanged if out of range
-  text.remove_prefix(size_t(result.ptr - text.data()));
+  text = rest;
   return value;
 }
 

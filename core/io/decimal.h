@@ -11,7 +11,8 @@ struct Decimal {
 };
 
 /// Reads a decimal number at the start of the text, whatever the locale, and cuts it and the blanks before it
-/// off. Numbers beyond the precision become infinite or zero; "nan" and "inf" are read as such. Nothing if
+/// off. Numbers beyond the precision become infinite or zero; "nan" and "inf" are read as such, and what
+/// Microsoft's runtimes print for them ("1.#QNAN"). Nothing if
 /// there is no number, or something else than a blank or the end follows it.
 std::optional<Decimal> takeDecimal(std::string_view& text);
 

@@ -26,6 +26,7 @@ struct PvsFile {
   std::string scene_name;       ///< file name without folder, for people
   std::string device;           ///< on which the bake began: that of the first cell; empty before it
   BakeParams params;
+  glm::dvec3 offset{0.0};      ///< Scene::offset: cells and witnesses are less this, the scene's file is not
   bool has_witnesses = false;  ///< every cell has one witness a triangle
   /// Objects that open: closed in the cells' sets, hiding nothing in what their open sets add. Ascending,
   /// disjoint.

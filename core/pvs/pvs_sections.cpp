@@ -18,7 +18,7 @@ namespace {
 constexpr size_t kPlannedCellBytes = 4 + 9 * 8;
 /// Bytes of a witness before compression: origin, direction, stage.
 constexpr uint64_t kWitnessBytes = 25;
-constexpr uint32_t kFlagWitnesses = 1, kFlagDoors = 2, kFlagSeeThrough = 4;
+constexpr uint32_t kFlagWitnesses = 1, kFlagDoors = 2, kFlagSeeThrough = 4, kFlagOffset = 8;
 /// Bytes of named triangles without the name's characters.
 constexpr size_t kNamedTrianglesBytes = 4 + 2 * 4;
 /// Of programs that wrote no revision.
@@ -48,6 +48,17 @@ Value readValue(ByteReader& in, const Param& param, const ParamField<Value>& fie
   } else {
     return in.number<Value>();
   }
+}
+
+/// Three numbers of which one at least is not 0.
+glm::dvec3 readOffset(ByteReader& in) {
+  glm::dvec3 offset;
+  for (int axis = 0; axis < 3; ++axis) {
+    offset[axis] = in.number<double>();
+    require(std::isfinite(offset[axis]), "an offset that is none");
+  }
+  require(offset != glm::dvec3(0.0), "an offset that is none");
+  return offset;
 }
 
 BakeParams readParams(ByteReader& in, uint32_t version) {
@@ -188,7 +199,8 @@ std::vector<uint32_t> readSet(ByteReader& in, CellStats& stats, const PvsFile& h
 }  // namespace
 
 uint32_t versionOf(const PvsFile& pvs) {
-  const bool plain = pvs.doors.empty() && pvs.see_through.empty() && pvs.params.smallest_hole == 0;
+  const bool plain = pvs.doors.empty() && pvs.see_through.empty() && pvs.params.smallest_hole == 0 &&
+                     pvs.offset == glm::dvec3(0.0);
   return plain ? kPvsVersionWithCosts : kPvsVersionWithDoors;
 }
 
@@ -214,14 +226,16 @@ Bytes writeHeadPayload(const PvsFile& pvs) {
   ByteWriter out;
   out.number(pvs.scene_hash);
   out.number(pvs.triangle_count);
+  const bool has_offset = pvs.offset != glm::dvec3(0.0);
   out.number((pvs.has_witnesses ? kFlagWitnesses : 0u) | (pvs.doors.empty() ? 0u : kFlagDoors) |
-             (pvs.see_through.empty() ? 0u : kFlagSeeThrough));
+             (pvs.see_through.empty() ? 0u : kFlagSeeThrough) | (has_offset ? kFlagOffset : 0u));
   out.number(pvs.algorithm);
   writeParams(out, pvs.params, versionOf(pvs));
   out.text(pvs.scene_name);
   out.text(pvs.intersector);
   writeObjects(out, pvs.doors);
   writeObjects(out, pvs.see_through);
+  for (int axis = 0; has_offset && axis < 3; ++axis) out.number(pvs.offset[axis]);
   out.number(uint32_t(pvs.planned.size()));
   for (const ViewCell& cell : pvs.planned) {
     out.text(cell.name);
@@ -239,8 +253,9 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version) {
   pvs.scene_hash = in.number<uint64_t>();
   pvs.triangle_count = in.number<uint32_t>();
   const auto flags = in.number<uint32_t>();
-  const uint32_t known =
-      version < kPvsVersionWithDoors ? kFlagWitnesses : kFlagWitnesses | kFlagDoors | kFlagSeeThrough;
+  const uint32_t known = version < kPvsVersionWithDoors
+                             ? kFlagWitnesses
+                             : kFlagWitnesses | kFlagDoors | kFlagSeeThrough | kFlagOffset;
   require((flags & ~known) == 0, "unknown flags");
   pvs.has_witnesses = (flags & kFlagWitnesses) != 0;
   pvs.algorithm = version < kPvsVersionWithCosts ? kFirstAlgorithm : in.number<uint32_t>();
@@ -254,6 +269,7 @@ PvsFile readHeadPayload(std::span<const uint8_t> payload, uint32_t version) {
   }
   if ((flags & kFlagDoors) != 0) pvs.doors = readObjects(in, pvs.triangle_count);
   if ((flags & kFlagSeeThrough) != 0) pvs.see_through = readObjects(in, pvs.triangle_count);
+  if ((flags & kFlagOffset) != 0) pvs.offset = readOffset(in);
   const auto planned = in.number<uint32_t>();
   require(planned <= in.left() / kPlannedCellBytes, "more cells announced than there are");
   pvs.planned.reserve(planned);

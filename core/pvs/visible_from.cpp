@@ -7,8 +7,9 @@
 namespace sightline {
 
 const CellPvs* cellAt(const PvsFile& pvs, const glm::dvec3& position) {
-  const auto found =
-      std::ranges::find_if(pvs.cells, [&](const CellPvs& cell) { return cellContains(cell.cell, position); });
+  const auto found = std::ranges::find_if(pvs.cells, [&, place = position - pvs.offset](const CellPvs& cell) {
+    return cellContains(cell.cell, place);
+  });
   return found == pvs.cells.end() ? nullptr : &*found;
 }
 

@@ -8,10 +8,10 @@
 
 namespace sightline {
 
-/// The baked cell that answers for a viewer at a position (world space, the units of the scene): the first of
-/// pvs.cells that contains it (cellContains: surfaces belong to their cell). The set of each such cell holds
-/// what is seen from there; so bake small cells before the large ones that hold them, where the closer answer
-/// is wanted. A flat cell looks along its +z only, and its set is what a viewer on it sees in front.
+/// The baked cell that answers for a viewer at a position (in the coordinates of the scene's file): the first
+/// of pvs.cells that contains it (cellContains: surfaces belong to their cell). The set of each such cell
+/// holds what is seen from there; so bake small cells before the large ones that hold them, where the closer
+/// answer is wanted. A flat cell looks along its +z only, and its set is what a viewer on it sees in front.
 /// Null: no baked cell contains the position, or it is not finite.
 ///
 /// Time grows with the number of cells, by some nanoseconds a cell; memory is not allocated but for cells

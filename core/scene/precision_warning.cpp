@@ -8,13 +8,11 @@
 #include <vector>
 
 #include "core/scene/largest.h"
+#include "core/scene/median_edge.h"
 #include "core/scene/triangle_area.h"
 
 namespace sightline {
 namespace {
-
-/// Triangles that the median edge is taken from, evenly spread over the scene.
-constexpr size_t kMedianTriangles = 1 << 18;
 
 /// Coarser steps, in edges, bend what one sees of a triangle.
 constexpr double kCoarse = 1e-3;
@@ -53,20 +51,6 @@ class Positions {
 
   double edge(size_t triangle, int from) const {
     return glm::length(corner(triangle, (from + 1) % 3) - corner(triangle, from));
-  }
-
-  /// Of all edges longer than 0; 0 if there is none.
-  double medianEdge() const {
-    std::vector<double> edges;
-    const size_t step = 1 + scene_.triangleCount() / kMedianTriangles;
-    for (size_t i = 0; i < scene_.triangleCount(); i += step) {
-      for (int from = 0; from < 3; ++from) edges.push_back(edge(i, from));
-    }
-    std::erase(edges, 0.0);
-    if (edges.empty()) return 0.0;
-    const auto middle = edges.begin() + std::ptrdiff_t(edges.size() / 2);
-    std::nth_element(edges.begin(), middle, edges.end());
-    return *middle;
   }
 
   /// Of triangles that have a shape in the file. Without `all`, looks no further than at those without area.
@@ -109,40 +93,75 @@ class Positions {
   std::span<const glm::vec3> remainders_;
 };
 
-/// The middle of the scene in a round number: at most a tenth of its size off, whole if the scene is not
-/// tiny.
-std::string roundMiddle(const glm::dvec3& middle, double size) {
+/// A power of ten: about a hundredth to a tenth of the size, but at least 1.
+double roundUnit(double size) {
   double unit = 1.0;
-  while (unit > size) unit /= 10.0;
   while (unit * 100.0 < size) unit *= 10.0;
-  const glm::dvec3 offset = glm::round(middle / unit) * unit + 0.0;
-  return fmt::format("({:.10g}, {:.10g}, {:.10g})", offset.x, offset.y, offset.z);
+  return unit;
 }
+
+/// Where the scene lies, and how fine floats are there and could be.
+struct Extent {
+  explicit Extent(const Bounds& bounds)
+      : low(bounds.low),
+        high(bounds.high),
+        reach(glm::max(glm::abs(low), glm::abs(high))),
+        size(largest(high - low)),
+        step(stepAt(largest(reach))),
+        finest_step(stepAt(size / 2)) {}
+
+  bool isFar() const { return step >= kFar * finest_step; }
+  bool isFarAlong(int axis) const { return stepAt(reach[axis]) >= kFar * finest_step; }
+
+  glm::dvec3 low, high, reach;
+  double size, step, finest_step;
+};
 
 }  // namespace
 
-std::string precisionWarning(const Scene& scene, std::span<const glm::vec3> remainders) {
-  const Bounds bounds = sceneBounds(scene);
-  const glm::dvec3 low(bounds.low), high(bounds.high);
-  const double reach = largest(glm::max(glm::abs(low), glm::abs(high)));
-  const double size = largest(high - low);
-  const double step = stepAt(reach);
-  const Positions positions(scene, remainders);
-  const double median_edge = positions.medianEdge();
+glm::dvec3 neededOffset(const Scene& scene, std::span<const glm::vec3> remainders) {
+  const Extent extent(sceneBounds(scene));
+  glm::dvec3 offset(0.0);
+  if (!extent.isFar()) return offset;
+  const double median_edge = medianEdge(scene, remainders);
+  if (median_edge == 0.0) return offset;
+  if (extent.step <= kCoarse * median_edge &&
+      Positions(scene, remainders).loss(median_edge, false).collapsed == 0) {
+    return offset;
+  }
+  const double unit = roundUnit(extent.size);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!extent.isFarAlong(axis)) continue;
+    offset[axis] = std::round((extent.low[axis] + extent.high[axis]) / 2.0 / unit) * unit + 0.0;
+  }
+  return offset;
+}
+
+std::string precisionWarning(const Scene& scene, std::span<const glm::vec3> remainders,
+                             bool file_has_floats) {
+  const Extent extent(sceneBounds(scene));
+  const double median_edge = medianEdge(scene, remainders);
   if (median_edge == 0.0) return {};
-  const bool is_far = step >= kFar * stepAt(size / 2);
-  const bool bends = is_far && step > kCoarse * median_edge;
-  const Loss loss = positions.loss(median_edge, bends);
+  const bool moved = scene.offset != glm::dvec3(0.0);
+  const double file_reach =
+      largest(glm::max(glm::abs(extent.low + scene.offset), glm::abs(extent.high + scene.offset)));
+  if (moved && file_has_floats && stepAt(file_reach) > kCoarse * median_edge) {
+    return fmt::format(
+        "the file has its coordinates in single precision, which steps by {:.3g} at {:.10g}, and the median "
+        "edge "
+        "is {:.3g}: its triangles were bent before they came here; export it from nearer to the origin",
+        stepAt(file_reach), file_reach, median_edge);
+  }
+  const bool bends = (extent.isFar() || moved) && extent.step > kCoarse * median_edge;
+  const Loss loss = Positions(scene, remainders).loss(median_edge, bends);
   if (!bends && loss.collapsed == 0) return {};
-  const std::string cure =
-      is_far ? fmt::format("move the scene to the origin before: subtract {}",
-                           roundMiddle((low + high) / 2.0, std::max(size, step)))
-             : "the scene is too wide for its detail: cut it into parts, and move each to the origin";
   return fmt::format(
-      "single precision steps by {:.3g} at coordinates of {:.10g}, and the median edge is {:.3g}; of {} "
-      "triangles "
-      "{} lose their area by that and {} turn by more than 30 degrees; {}",
-      step, reach, median_edge, scene.triangleCount(), loss.collapsed, loss.turned, cure);
+      "single precision steps by {:.3g} at coordinates of {:.10g}{}, and the median edge is {:.3g}; of {} "
+      "triangles {} lose their area by that and {} turn by more than 30 degrees; the scene is too {} for its "
+      "detail: {}",
+      extent.step, largest(extent.reach), moved ? " (less the offset)" : "", median_edge,
+      scene.triangleCount(), loss.collapsed, loss.turned, extent.isFar() ? "small" : "wide",
+      extent.isFar() ? "scale it up, and move it to the origin" : "cut it into parts");
 }
 
 }  // namespace sightline

@@ -105,6 +105,9 @@ uint64_t hashScene(const Scene& scene) {
   } else {
     hasher.addMade(scene.triangleCount(), [&](uint64_t i) { return scene.vertexNumbers(uint32_t(i)); });
   }
+  if (scene.offset != glm::dvec3(0.0)) {
+    hasher.add(&scene.offset, 1);
+  }
   const auto add = [&](const auto& list) {
     const uint64_t size = list.size();
     hasher.add(&size, 1);

@@ -80,6 +80,10 @@ struct Scene {
                       ///< file that each triangle is cut from, counted from 0 through the whole
                       ///< file. OBJ: f and fo statements; PLY: rows of faces, triangles of tristrips
   Surfaces surfaces;  ///< holes, glass, and sides; empty where there are none
+  /// Whole numbers that were taken off the file's coordinates, where floats would not have held those: a
+  /// place in the file is positions[i] + offset. Cells files have the file's own coordinates: what reads one
+  /// moves its cells by -offset (core/cell/view_cell.h), as bake (core/api/bake.h) does.
+  glm::dvec3 offset{0.0};
   uint64_t degenerate_triangles = 0;    ///< zero area: kept (ids stay), cannot be hit
   uint64_t repaired_triangles = 0;      ///< dropped by --repair: bad index or vertex
   uint64_t alpha_triangles = 0;         ///< glTF alphaMode MASK or BLEND
@@ -158,7 +162,7 @@ struct Scene {
   uint32_t runEnd(uint32_t id, StoredTriangle at) const;
 };
 
-/// Hash of positions and triangles, and of surfaces where there are any (XXH3, 64 bit): what a PVS depends
+/// Hash of positions and triangles, and of surfaces and offset where there are any (XXH3, 64 bit): what a PVS depends
 /// on. Of a scene with instances that of the plain scene it stands for.
 uint64_t hashScene(const Scene& scene);
 

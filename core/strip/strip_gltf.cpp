@@ -44,11 +44,11 @@ class GltfStripper {
       : input_(input),
         name_(input.file.string()),
         is_glb_(input.bytes.starts_with("glTF")),
-        glb_(is_glb_ ? splitGlb(input.bytes, name_) : Glb{input.bytes, {}}),
+        glb_(is_glb_ ? splitGlb(input.bytes, name_) : Glb{input.bytes, {}, {}}),
         text_(trimmedJson(glb_.json)),
         root_(parseJson(text_, name_)),
-        document_(readGltfDocument(root_, name_)),
-        data_(document_, glb_.bin, input.file),
+        document_(readGltfDocument(root_, name_, input.options.ignored_extensions)),
+        data_(document_, glb_.bin, input.file, input.options.allow_external),
         edits_(text_),
         packer_(document_, root_, data_, text_, edits_) {}
 

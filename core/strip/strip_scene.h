@@ -13,6 +13,9 @@ struct StripOptions {
   bool keep_objects = false;
   /// Vertices that no triangle uses any more go, too.
   bool compact = false;
+  /// As the scene was loaded (SceneLoadOptions).
+  std::vector<std::string> ignored_extensions = {};
+  bool allow_external = false;
   /// Buffers beside the output may be replaced.
   bool overwrite = false;
 };

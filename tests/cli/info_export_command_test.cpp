@@ -78,13 +78,74 @@ TEST(InfoCommand, DescribesScenesCellsAndSets) {
   expectSays("info " + files.pvs(), {"quads.obj, 4 triangles", "1 of 1 baked", "spot", "50.00 %", "seed"});
 }
 
+TEST(InfoCommand, HintsAtMillimetres) {
+  const Files files;
+  std::ofstream(files / "mm.obj") << "v 0 0 0\nv 3000 0 0\nv 3000 2500 0\nf 1 2 3\n";
+  expectSays("info " + (files / "mm.obj"), {"extent           3000 x 2500 x 0, median edge 3000\n",
+                                            "hint             looks like millimetres"});
+  EXPECT_EQ(runProgram("info " + files.scene()).output.find("hint"), std::string::npos);
+}
+
+TEST(FarScenes, KeepTheirFilesCoordinates) {
+  const Files files;
+  std::ofstream(files / "far.obj") << "v 500000.1 35 4649776.2\nv 500000.3 35 4649776.2\n"
+                                      "v 500000.3 35.2 4649776.2\nv 500000.1 35.2 4649776.2\nf 1 2 3 4\n";
+  const std::string scene = files / "far.obj", pvs = files / "far.pvs", cells = files / "far.json";
+  expectSays("cells " + scene + " -o " + cells + " --width 0.1 --height 0.1 --length 1 --path " +
+                 "500000.2,35.1,4649777 500000.2,35.1,4649778",
+             {"1 view cells"});
+  const auto cell = nlohmann::json::parse(readText(cells))["cells"][0];
+  EXPECT_NEAR(cell["center"][0].get<double>(), 500000.2, 1e-6);
+  EXPECT_NEAR(cell["center"][2].get<double>(), 4649777.5, 1e-6);
+  expectSays("bake " + scene + " --cells " + cells + " -o " + pvs +
+                 " --device cpu --n-rand 10000 --validation-rays 1000 --report " + (files / "r.json"),
+             {"100.00 %"});
+  const auto report = nlohmann::json::parse(readText(files / "r.json"));
+  EXPECT_EQ(report["scene"]["offset"], nlohmann::json({500000.0, 35.0, 4649776.0}));
+  EXPECT_NEAR(report["cells"][0]["center"][2].get<double>(), 4649777.5, 1e-6);
+  expectSays("info " + pvs, {"offset           (500000, 35, 4649776), taken off"});
+  expectSays("export " + pvs + " --cell 0 --format json -o " + (files / "x.json"), {"2 triangles"});
+  EXPECT_NEAR(nlohmann::json::parse(readText(files / "x.json"))["cell"]["center"][0].get<double>(), 500000.2,
+              1e-6);
+  expectSays("export " + pvs + " --cell 0 --format obj --scene " + scene + " -o " + (files / "x.obj"),
+             {"2 triangles"});
+  EXPECT_NE(readText(files / "x.obj").find("\nv 500000.3"), std::string::npos) << readText(files / "x.obj");
+}
+
+TEST(IgnoreExtension, OfEveryCommandThatLoads) {
+  const Files files;
+  std::ofstream(files / "a.gltf")
+      << R"({"asset":{"version":"2.0"},"extensionsRequired":["ACME_x"],"nodes":[{"mesh":0}],"meshes":[{"primitives":[)"
+      << R"({"attributes":{"POSITION":0}}]}],"accessors":[{"bufferView":0,"componentType":5121,"count":3,"type":)"
+      << R"("VEC3"}],"bufferViews":[{"buffer":0,"byteLength":9}],"buffers":[{"byteLength":9,"uri":)"
+      << R"("data:;base64,AAAAAQAAAAEA"}]})";
+  const std::string scene = files / "a.gltf";
+  expectFails("info " + scene, 1, "--ignore-extension");
+  expectSays("info " + scene + " --ignore-extension ACME_x", {"triangles        1"});
+  expectSays("bake " + scene + " --ignore-extension ACME_x --cells " + files.cells() + " -o " +
+                 (files / "a.pvs") + " --device cpu --n-rand 1000 --validation-rays 0 --report " +
+                 (files / "r.json"),
+             {"1 triangles"});
+  EXPECT_EQ(nlohmann::json::parse(readText(files / "r.json"))["features"]["ignored_extensions"][0], "ACME_x");
+  for (const std::string& command :
+       {"export " + (files / "a.pvs") + " --cell 0 --format json -o " + (files / "a.json") + " --scene " +
+            scene,
+        "picture " + scene + " " + (files / "a.pvs") + " --cell 0 --device cpu -o " + (files / "a.png"),
+        "trace " + scene + " --from 0,0,9 --along 0,0,-1",
+        "cells " + scene + " -o " + (files / "c.json") + " --path 0,0,5 0,0,9"}) {
+    expectFails(command, 1, "ACME_x");
+    EXPECT_EQ(runProgram(command + " --ignore-extension ACME_x").exit_code, 0) << command;
+  }
+}
+
 TEST(InfoCommand, AndABakeSayWhatOfASceneIsOtherwise) {
   const Files files;
   std::ofstream(files / "m.mtl") << "newmtl pane\nd 0.4\n";
   std::ofstream(files / "far.obj")
       << "mtllib m.mtl\nusemtl pane\nv 4649776.1 0 0\nv 4649776.2 0 0\nv 4649776.1 0.1 0\n"
-         "f 1 2 3\nusemtl wall\nv 4649777 0 0\nv 4649777 2 0\nv 4649777 0 2\nf 4 5 6\n";
-  const std::string lost = "of 2 triangles 1 lose their area by that and 0 turn by more than 30 degrees";
+         "f 1 2 3\nusemtl wall\nv 4649777 0 0\nv 4649777 2 0\nv 4649777 0 2\nf 4 5 6\n"
+         "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 7 8 9\n";
+  const std::string lost = "of 3 triangles 1 lose their area by that and 0 turn by more than 30 degrees";
   expectSays("info " + (files / "far.obj"),
              {"glass            1 triangles", "warning          single precision", lost.c_str()});
   expectSays("bake " + (files / "far.obj") + " --cells " + files.cells() + " -o " + (files / "far.pvs") +

@@ -1,7 +1,6 @@
-#include "core/formats/loaders.h"
 #include "tests/fuzz/check.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  sightline::fuzz::checkScene(sightline::loadPly, ".ply", data, size);
+  sightline::fuzz::checkScene(".ply", data, size);
   return 0;
 }

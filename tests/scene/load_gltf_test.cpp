@@ -233,7 +233,7 @@ TEST(LoadGltf, BuffersOutsideTheFolderAreRefused) {
     EXPECT_EQ(test::errorOf([&] { load(uri); }),
               "scene/a.gltf: buffers[0].uri: lies outside of the scene's folder, where nothing is read; put "
               "it beside "
-              "the scene")
+              "the scene, or load it with --allow-external")
         << uri;
   }
   for (const char* uri : {"b.bin", "./b.bin", "sub/../b.bin", "..b.bin"})
@@ -342,9 +342,18 @@ TEST(LoadGltf, ErrorsNameThePlace) {
   const std::pair<Change, std::string> cases[] = {
       {[](json& d) { d.erase("asset"); }, "key \"asset\" is missing"},
       {[](json& d) { d["asset"]["version"] = "1.0"; },
-       "asset.version: \"1.0\" is not supported, only glTF 2"},
-      {[](json& d) { d["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
-       "extensionsRequired: \"KHR_draco_mesh_compression\" is not supported; convert the file without it"},
+       "asset.version: \"1.0\" is not supported, only glTF 2; convert the file"},
+      {[](json& d) { d["asset"]["version"] = 1.1; },
+       "asset.version: \"1.1\" is not supported, only glTF 2; convert the file"},
+      {[](json& d) { d["extensionsRequired"] = {"EXT_other"}; },
+       "extensionsRequired: \"EXT_other\" is unknown; convert the file without it, or load it without what "
+       "it "
+       "adds (--ignore-extension)"},
+      {[](json& d) {
+         d["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+         d["accessors"][0].erase("bufferView");
+       },
+       "accessors[0]: positions without a bufferView"},
       {[](json& d) { d["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 7; },
        "meshes[0].primitives[0].attributes.POSITION: 7 is out of range, there are 2 in the file"},
       {[](json& d) { d["meshes"][0]["primitives"][0]["indices"] = -1; },
@@ -352,7 +361,7 @@ TEST(LoadGltf, ErrorsNameThePlace) {
       {[](json& d) { d["meshes"][0]["primitives"][0]["mode"] = 9; },
        "meshes[0].primitives[0].mode: expected 0 to 6"},
       {[](json& d) { d["meshes"][0]["primitives"][0]["extensions"]["KHR_draco_mesh_compression"] = 1; },
-       "meshes[0].primitives[0]: KHR_draco_mesh_compression is not supported; convert the file without it"},
+       "meshes[0].primitives[0].extensions.KHR_draco_mesh_compression: expected an object"},
       {[](json& d) { d["meshes"][0]["primitives"] = 3; }, "meshes[0].primitives: expected a list"},
       {[](json& d) { d["accessors"][0]["count"] = 5; },
        "accessors[0]: 5 elements from byte 0 on lie outside of the buffer view with its 48 bytes"},
@@ -386,22 +395,24 @@ TEST(LoadGltf, ErrorsNameThePlace) {
       {[](json& d) { d["bufferViews"][0]["buffer"] = 1; }, "buffers[1].uri: is missing"},
       {[](json& d) { d["bufferViews"][0]["buffer"] = 2; },
        "bufferViews[0].buffer: 2 is out of range, there are 2 in the file"},
-      {[](json& d) { d["buffers"][0]["byteLength"] = 64; },
-       "buffers[0]: has 60 bytes, byteLength says 64; is the file truncated?"},
+      {[](json& d) {
+         d["buffers"][0]["byteLength"] = 64;
+         d["bufferViews"][1]["byteLength"] = 16;
+       },
+       "bufferViews[1]: bytes 48 to 48 + 16 are missing: buffers[0] has 60 bytes, its byteLength says 64; is "
+       "the "
+       "file truncated?"},
       {[](json& d) { d["buffers"][0]["uri"] = "data:;base64,AAA="; },
-       "buffers[0]: has 2 bytes, byteLength says 60; is the file truncated?"},
+       "bufferViews[0]: bytes 0 to 0 + 48 are missing: buffers[0] has 2 bytes, its byteLength says 60; is "
+       "the file "
+       "truncated?"},
       {[](json& d) { d["buffers"][0]["uri"] = "data:;base64,AA*A"; }, "buffers[0].uri: bad base64"},
       {[](json& d) { d["buffers"][0]["uri"] = "data:,hello"; },
        "buffers[0].uri: expected data:...;base64,..."},
       {[](json& d) { d["buffers"][0]["uri"] = "http://a/b.bin"; },
        "buffers[0].uri: only data: and files beside the scene are supported"},
-      {[](json& d) { d["buffers"][0]["uri"] = "a%0"; }, "buffers[0].uri: bad % sequence in the uri"},
       {[](json& d) { d["nodes"][0]["children"] = {0}; }, "nodes[0]: occurs twice in the scene's tree"},
       {[](json& d) { d["nodes"][0]["children"] = {5}; }, "nodes[0].children[0]: expected an index below 1"},
-      {[](json& d) {
-         d["nodes"][0]["rotation"] = {0, 0, 0, 0};
-       },
-       "nodes[0].rotation: the quaternion is zero"},
       {[](json& d) {
          d["nodes"][0]["rotation"] = {0, 0, 1};
        },
@@ -410,7 +421,7 @@ TEST(LoadGltf, ErrorsNameThePlace) {
          d["nodes"][0]["scale"] = {0, 1e300, 1};
        },
        "accessors[0], element 2: vertex (0, inf, 0) is not finite; --repair drops its triangles"},
-      {[](json& d) { d["scene"] = 3; }, "scene: 3 is out of range, there are 0 in the file"},
+      {[](json& d) { d["scene"] = 3; }, "scene: 3 is out of range, there are 1 in the file"},
   };
   const GltfFile file = squareFile<uint16_t>(5123);
   for (const auto& [change, message] : cases) {
@@ -419,7 +430,6 @@ TEST(LoadGltf, ErrorsNameThePlace) {
     bad.document["buffers"] = buffers;
     bad.document["scenes"] = json::array();
     bad.document["scenes"] = {{{"nodes", {0}}}};
-    if (message.starts_with("scene:")) bad.document.erase("scenes");
     change(bad.document);
     EXPECT_EQ(loadError("a.glb", bad.glb()), "a.glb: " + message) << bad.document.dump();
   }
@@ -430,8 +440,10 @@ TEST(LoadGltf, NonFiniteVerticesAndRepair) {
   const size_t positions = file.addPositions({{0, 0, 0}, {1, 0, 0}, {NAN, 1, 0}, {0, 1, 0}});
   const std::vector<uint16_t> indices = {0, 1, 2, 0, 1, 3, 0, 1, 77, 0};
   file.addMesh(positions, int64_t(file.addAccessor(file.addView(bytesOf(indices)), 5123, 10, "SCALAR")));
+  file.document["accessors"].back()["count"] = 9;
   EXPECT_EQ(loadError("a.glb", file.glb()),
             "a.glb: accessors[0], element 2: vertex (nan, 1, 0) is not finite; --repair drops its triangles");
+  file.document["accessors"].back()["count"] = 10;
   SceneLoadOptions repair;
   repair.repair = true;
   const Scene scene = loadText("a.glb", file.glb(), repair);
@@ -451,7 +463,7 @@ TEST(LoadGltf, ContainerErrors) {
   EXPECT_EQ(loadError("a.glb", "glTF"),
             "a.glb: is no GLB file: it does not start with \"glTF\" and a header");
   EXPECT_EQ(with(0, 7), "a.glb: is no GLB file: it does not start with \"glTF\" and a header");
-  EXPECT_EQ(with(4, 1), "a.glb: GLB version 1, only 2 is supported");
+  EXPECT_EQ(with(4, 1), "a.glb: GLB version 1, only 2 is supported; convert the file");
   EXPECT_EQ(with(8, size + 1), "a.glb: the header says " + std::to_string(size + 1) +
                                    " bytes, the file has " + std::to_string(size) + "; is it truncated?");
   EXPECT_EQ(with(16, 1), "a.glb: the first chunk is not JSON");
@@ -521,7 +533,7 @@ TEST(LoadGltf, ManyTargetsOfManyVerticesAreTooMuch) {
 
 TEST(LoadGltf, TheVersionIsQuotedInOneLine) {
   EXPECT_EQ(loadError("a.gltf", R"({"asset":{"version":"3\n\u001b[2J"}})"),
-            "a.gltf: asset.version: \"3__[2J\" is not supported, only glTF 2");
+            "a.gltf: asset.version: \"3__[2J\" is not supported, only glTF 2; convert the file");
 }
 
 TEST(LoadGltf, NamesOfFilesHaveNoControlCharacters) {

@@ -105,15 +105,18 @@ TEST(LoadObj, ErrorsNameTheLine) {
       {kObjSquare + "f 1 \\\n 5 2\n\nf 1 2 6\nv 0 0 0\n",
        "a.obj:8: vertex index 6 is out of range 1..5; --repair drops the face"},
       {"v 0 0\n", "a.obj:1: expected three numbers after \"v\""},
-      {"v 0 0,5 1\n", "a.obj:1: expected three numbers after \"v\""},
-      {"v 0 0 0\n v 0 nan 0\n", "a.obj:2: vertex (0, nan, 0) is not finite; --repair drops its triangles"},
-      {"v 0 0 0\nv 0 -inf 0\n", "a.obj:2: vertex (0, -inf, 0) is not finite; --repair drops its triangles"},
-      {"v 0 1e12 0\nv 0 1e13 0\n",
+      {"v 0 0,5 1\n",
+       "a.obj:1: expected three numbers after \"v\", with decimal points, and found \"0,5\"; replace commas "
+       "by "
+       "points"},
+      {"v 0 0 0\n v 0 nan 0\nf 1 1 2\n",
+       "a.obj:2: vertex (0, nan, 0) is not finite; --repair drops its triangles"},
+      {"v 0 0 0\nv 0 -inf 0\nf 2 1 1\n",
+       "a.obj:2: vertex (0, -inf, 0) is not finite; --repair drops its triangles"},
+      {"v 0 1e12 0\nv 0 1e13 0\nf 1 2 1\n",
        "a.obj:2: vertex (0, 10000000000000, 0) is farther than 2^40 from the origin, too far to trace: scale "
-       "the "
-       "scene; "
-       "--repair drops its triangles"},
-      {"v 0 1e39 0\n", "a.obj:1: vertex (0, inf, 0) is not finite; --repair drops its triangles"},
+       "the scene; --repair drops its triangles"},
+      {"v 0 1e39 0\nf 1 1 1\n", "a.obj:1: vertex (0, inf, 0) is not finite; --repair drops its triangles"},
       {kObjSquare, "a.obj: holds no triangles"},
       {"", "a.obj: is empty"},
       {"no obj at all",
@@ -245,7 +248,8 @@ TEST(LoadObj, MaterialsOutsideTheFolderAreNotRead) {
     const Scene scene = load(library);
     EXPECT_EQ(scene.glass_triangles, 0u) << library;
     ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_NE(scene.warnings[0].find("lies outside of the scene's folder; its materials count as opaque"),
+    EXPECT_NE(scene.warnings[0].find(
+                  "lies outside of the scene's folder (--allow-external); its materials count as opaque"),
               std::string::npos)
         << scene.warnings[0];
   }
@@ -307,7 +311,7 @@ TEST(LoadScene, FileErrors) {
   std::filesystem::create_directory(folder / "dir.obj");
   EXPECT_EQ(error("dir.obj"), "dir.obj: is a directory, not a file");
   folder.write("a.fbx", "x");
-  EXPECT_EQ(error("a.fbx"), "a.fbx: unknown extension \".fbx\", expected .obj, .gltf, .glb or .ply");
+  EXPECT_EQ(error("a.fbx"), "a.fbx: unknown extension \".fbx\", expected .obj, .gltf, .glb, .ply or .b3dm");
   folder.write("A.OBJ", kObjSquare + "f 1 2 3\n");
   EXPECT_EQ(loadScene(folder / "A.OBJ").triangles.size(), 1u);
 }

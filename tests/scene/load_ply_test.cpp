@@ -97,7 +97,7 @@ TEST(LoadPly, ErrorsNameElementAndRow) {
   const std::string head = "ply\nformat ascii 1.0\n";
   const std::pair<std::string, std::string> cases[] = {
       {"plx\n", "a.ply:1: expected \"ply\""},
-      {"ply", "a.ply:1: the header is cut off, \"end_header\" is missing"},
+      {"ply\n", "a.ply:2: the header is cut off, \"end_header\" is missing"},
       {"ply\nformat asci 1.0\n", "a.ply:2: expected format ascii, binary_little_endian or binary_big_endian"},
       {"ply\nformat ascii 2.0\n", "a.ply:2: expected format version 1.0"},
       {head + "element vertex -1\n", "a.ply:3: expected a whole number of rows"},
@@ -109,8 +109,7 @@ TEST(LoadPly, ErrorsNameElementAndRow) {
       {head + "elemen vertex 1\n", "a.ply:3: expected comment, obj_info, element, property or end_header"},
       {head + "element vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n",
        "a.ply: element vertex has no property z"},
-      {head + "element face 1\n" + kFace + "end_header\n3 0 1 2\n",
-       "a.ply: element face stands before the vertices"},
+      {head + "element face 1\n" + kFace + "end_header\n3 0 1 2\n", "a.ply: has faces, but no vertices"},
       {kPlyVertices + "element face 1\nproperty int x\nend_header\n" + kRows + "1\n",
        "a.ply: element face has no list vertex_indices"},
       {asciiFile(2, "3 0 1 2\n3 0 1 4\n"),
@@ -122,9 +121,13 @@ TEST(LoadPly, ErrorsNameElementAndRow) {
       {asciiFile(2, "3 0 1 2\n3 0 1 x\n"),
        "a.ply: element face, row 1: property vertex_indices: expected a number"},
       {asciiFile(2, "3 0 1 2\n3 0 1 "),
-       "a.ply: element face, row 1: property vertex_indices: the file ends here; is it truncated?"},
+       "a.ply: element face, row 1: property vertex_indices: the file ends here; is it truncated? --repair "
+       "keeps the "
+       "faces before"},
       {asciiFile(2, "3 0 1 2\n"),
-       "a.ply: element face, row 1: property vertex_indices: the file ends here; is it truncated?"},
+       "a.ply: element face, row 1: property vertex_indices: the file ends here; is it truncated? --repair "
+       "keeps the "
+       "faces before"},
       {asciiFile(1, "200 0 1 2\n"),
        "a.ply: element face, row 0: property vertex_indices: a list of 200 values does not fit the 7 bytes "
        "left"},
@@ -152,6 +155,41 @@ TEST(LoadPly, RepairDropsAndCounts) {
   expectValid(scene);
   EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {1, 2, 3}}));
   EXPECT_EQ(scene.repaired_triangles, 3u);
+}
+
+TEST(LoadPly, FacesBeforeTheirVertices) {
+  const std::string head = "ply\nformat ascii 1.0\nelement face 2\n" + kFace;
+  const std::string vertices = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string rows = "3 0 1 2\n3 2 1 0\n", corners = "0 0 0\n1 0 0\n0 1 0\n";
+  const Scene scene = loadText("a.ply", head + vertices + "end_header\n" + rows + corners);
+  expectValid(scene);
+  EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {2, 1, 0}}));
+  // More faces behind them: ids follow the file's order.
+  const Scene both = loadText("a.ply", head + vertices + "element tristrips 1\n" + kFace + "end_header\n" +
+                                           rows + corners + "3 1 2 0\n");
+  EXPECT_EQ(both.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {2, 1, 0}, {1, 2, 0}}));
+  EXPECT_EQ(loadError("a.ply", head + vertices + "end_header\n3 0 1 3\n3 0 1 2\n" + corners),
+            "a.ply: element face, row 0: vertex index 3 is out of range 0..2; --repair drops the face");
+  EXPECT_EQ(loadError("a.ply", head + vertices + "end_header\n3 0 1 2\n", {.repair = true}),
+            "a.ply: element face, row 1: property vertex_indices: the file ends here; is it truncated? "
+            "--repair keeps "
+            "the faces before");
+}
+
+TEST(LoadPly, RepairKeepsTheFacesThatAreThere) {
+  for (const std::string& rows :
+       {std::string("3 0 1 2\n3 1 2 3\n"), std::string("3 0 1 2\n3 1 2 3\n3 0 1 ")}) {
+    const Scene scene = loadText("a.ply", asciiFile(7, rows), {.repair = true});
+    expectValid(scene);
+    EXPECT_EQ(scene.triangles, (std::vector<glm::uvec3>{{0, 1, 2}, {1, 2, 3}}));
+    EXPECT_EQ(scene.warnings, std::vector<std::string>{"the header promises 7 faces, the file ends after 2"});
+  }
+  const std::string whole = binaryFile(false, 1.0f);
+  for (size_t cut = 1; cut < 8; ++cut) {
+    EXPECT_NE(loadError("a.ply", whole.substr(0, whole.size() - cut)).find("element face, row 1"),
+              std::string::npos);
+    EXPECT_EQ(loadText("a.ply", whole.substr(0, whole.size() - cut), {.repair = true}).triangles.size(), 1u);
+  }
 }
 
 TEST(LoadPly, NamesWithControlCharactersDoNotReachTheTerminal) {

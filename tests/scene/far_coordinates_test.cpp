@@ -1,16 +1,20 @@
-// Scenes whose detail single precision does not hold: the warning, with its count, against brute force.
+// Scenes whose detail single precision does not hold where they are: read less an offset, and the warning
+// where that does not help, with its count, against brute force.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
 
+#include "core/api/bake.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/save_scene.h"
 #include "core/generate/generate.h"
+#include "core/pvs/visible_from.h"
 #include "core/scene/scene.h"
 #include "tests/scene/files.h"
 #include "tests/scene/gltf_files.h"
+#include "tests/support/make_cell.h"
 
 namespace sightline {
 namespace {
@@ -127,34 +131,137 @@ std::string warningOf(const Scene& scene) {
   return scene.warnings.empty() ? "" : scene.warnings[0];
 }
 
-TEST(PrecisionWarning, SaysWhatFarCoordinatesLose) {
-  const Ground far = ground(kUtm);
-  const std::string expected =
-      "single precision steps by 0.5 at coordinates of 4649780, and the median edge is 0.102; " +
-      lossOf(far) + "; move the scene to the origin before: subtract (500002, 4649778, 35)";
-  EXPECT_EQ(lossOf(far),
-            "of 3200 triangles 864 lose their area by that and 1696 turn by more than 30 degrees");
-  EXPECT_EQ(warningOf(loadText("a.obj", asObj(far))), expected);
-  EXPECT_EQ(warningOf(loadText("a.ply", asPly(far, false))), expected);
-  EXPECT_EQ(warningOf(loadText("a.ply", asPly(far, true))), expected);
-  // Corners that are floats themselves, and a node that takes them away.
-  Ground moved = ground(glm::dvec3(0));
-  for (glm::dvec3& p : moved.corners) p = glm::dvec3(rounded(p)) + kUtm;
-  const std::string by_node = warningOf(loadText("a.glb", asGlb(ground(glm::dvec3(0)), kUtm)));
-  EXPECT_NE(by_node.find(lossOf(moved)), std::string::npos) << by_node;
+/// The positions are those of the ground less the offset, each rounded once.
+void expectLess(const Scene& scene, const Ground& ground, const glm::dvec3& offset) {
+  EXPECT_EQ(scene.offset, offset);
+  ASSERT_EQ(scene.positions.size(), ground.corners.size());
+  for (size_t i = 0; i < ground.corners.size(); ++i) {
+    ASSERT_EQ(scene.positions[i], rounded(ground.corners[i] - offset)) << i;
+  }
+  EXPECT_EQ(scene.triangles, ground.triangles);
+  EXPECT_EQ(warningOf(scene), "");
+  EXPECT_EQ(scene.degenerate_triangles, 0u);
 }
 
-TEST(PrecisionWarning, CoarseStepsAreSaidWithoutACollapse) {
-  // 4 km off, edges are bent a little. A file of floats, whose own precision that is, gets the same word.
+TEST(FarCoordinates, LoseNothing) {
+  const glm::dvec3 mercator(-8237642, 0, 4970241);
+  for (const auto& [place, offset] : {std::pair(kUtm, glm::dvec3(500002, 4649778, 35)),
+                                      std::pair(mercator, glm::dvec3(-8237640, 0, 4970241))}) {
+    const Ground far = ground(place);
+    expectLess(loadText("a.obj", asObj(far)), far, offset);
+    expectLess(loadText("a.ply", asPly(far, false)), far, offset);
+    expectLess(loadText("a.ply", asPly(far, true)), far, offset);
+    // Corners that are floats themselves, and a node that takes them away.
+    Ground moved = ground(glm::dvec3(0));
+    for (glm::dvec3& p : moved.corners) p = glm::dvec3(rounded(p)) + place;
+    expectLess(loadText("a.glb", asGlb(ground(glm::dvec3(0)), place)), moved, offset);
+  }
+}
+
+TEST(FarCoordinates, ConcavePolygonsAreCutByTheirTrueShape) {
+  // An arrowhead of a tenth of a unit, which floats collapse there, among triangles that show the scale.
+  const auto text = [](const glm::dvec3& offset) {
+    std::string file = asObj(ground(offset));
+    for (const glm::dvec2& p : {glm::dvec2(0.0, 0.0), {0.1, 0.01}, {0.0, 0.02}, {0.08, 0.01}}) {
+      file += fmt::format("v {:.2f} {:.2f} {:.2f}\n", offset.x + p.x, offset.y + p.y, offset.z);
+    }
+    return file + "f -4 -3 -2 -1\n";
+  };
+  const Scene near = loadText("a.obj", text(glm::dvec3(0)));
+  EXPECT_EQ(near.offset, glm::dvec3(0));
+  EXPECT_EQ(loadText("a.obj", text(kUtm)).triangles, near.triangles);
+}
+
+TEST(FarCoordinates, OnlyAxesThatNeedItAreMoved) {
+  // 4 km off along x, edges are bent a little.
   const Ground far = ground({4000, 0, 0});
-  const std::string expected =
-      "single precision steps by 0.000244 at coordinates of 4004, and the median edge is 0.102; of 3200 "
-      "triangles "
-      "0 lose their area by that and 0 turn by more than 30 degrees; move the scene to the origin before: "
-      "subtract "
-      "(4002, 2, 0)";
-  EXPECT_EQ(warningOf(loadText("a.obj", asObj(far))), expected);
-  EXPECT_EQ(warningOf(loadText("a.glb", asGlb(far, glm::dvec3(0)))), expected);
+  const Scene scene = loadText("a.obj", asObj(far));
+  expectLess(scene, far, {4002, 0, 0});
+  // A file of floats was bent before; so far, and said.
+  const Scene floats = loadText("a.glb", asGlb(far, glm::dvec3(0)));
+  EXPECT_EQ(floats.offset, glm::dvec3(4002, 0, 0));
+  EXPECT_EQ(warningOf(floats),
+            "the file has its coordinates in single precision, which steps by 0.000244 at 4004, and the "
+            "median edge "
+            "is 0.102: its triangles were bent before they came here; export it from nearer to the origin");
+}
+
+TEST(FarCoordinates, HashesDiffer) {
+  // The same triangles a whole number of units apart: equal but for where they are.
+  Scene a = loadText("a.obj", asObj(ground(kUtm)));
+  const uint64_t hash = hashScene(a);
+  a.offset += 1.0;
+  EXPECT_NE(hashScene(a), hash);
+}
+
+TEST(FarCoordinates, SavedScenesComeBack) {
+  const test::Folder folder;
+  const Ground far = ground(kUtm);
+  const Scene scene = loadText("a.obj", asObj(far));
+  saveScene(scene, folder / "a.glb");
+  const Scene glb = loadScene(folder / "a.glb");
+  EXPECT_EQ(hashScene(glb), hashScene(scene));
+  saveScene(scene, folder / "b.obj");
+  const Scene obj = loadScene(folder / "b.obj");
+  EXPECT_EQ(obj.offset, scene.offset);
+  ASSERT_EQ(obj.positions.size(), scene.positions.size());
+  const double step = 0x1p-30;  // of a double at 4,649,778
+  for (size_t i = 0; i < obj.positions.size(); ++i) {
+    const glm::dvec3 off = glm::abs(glm::dvec3(obj.positions[i]) - glm::dvec3(scene.positions[i]));
+    ASSERT_LE(std::max({off.x, off.y, off.z}), step) << i;
+  }
+}
+
+TEST(FarCoordinates, SetsAreThoseNearTheOrigin) {
+  // A high wall through the squares of column 20; a cell well above either half sees that half and the wall.
+  const auto text = [](const glm::dvec3& at) {
+    std::string wall;
+    for (const glm::dvec2& p : {glm::dvec2(-30, -5), {34, -5}, {34, 30}, {-30, 30}}) {
+      wall += fmt::format("v {:.2f} {:.2f} {:.2f}\n", at.x + 2.05, at.y + p.x, at.z + p.y);
+    }
+    return asObj(ground(at)) + wall + "f -4 -3 -2 -1\n";
+  };
+  std::vector<ViewCell> cells = {testing_support::makeCell({0, 2, 4}, {1, 1, 0.5}),
+                                 testing_support::makeCell({4, 2, 4}, {1, 1, 0.5})};
+  cells[1].name = "other";
+  std::vector<std::vector<uint32_t>> expected(2);
+  for (uint32_t id = 0; id < 2 * kCells * kCells; ++id) {
+    const uint32_t column = id / 2 % kCells;
+    if (column <= 20) expected[0].push_back(id);
+    if (column >= 20) expected[1].push_back(id);
+  }
+  for (auto& set : expected) set.insert(set.end(), {3200, 3201});
+  BakeParams params;
+  params.n_rand = 200'000;
+  params.validation_rays = 0;
+  for (const glm::dvec3& place : {glm::dvec3(0), kUtm, glm::dvec3(-8237642, 35, 4970241)}) {
+    Session session(loadText("a.obj", text(place)), {.device = "cpu"});
+    EXPECT_EQ(session.scene().offset != glm::dvec3(0), place != glm::dvec3(0));
+    const PvsFile pvs = bake(session, moved(cells, place), params);
+    EXPECT_EQ(pvs.offset, session.scene().offset);
+    ASSERT_EQ(pvs.cells.size(), cells.size());
+    for (size_t i = 0; i < cells.size(); ++i) {
+      EXPECT_EQ(pvs.cells[i].triangles, expected[i]) << i << " at " << place.x;
+      const auto visible = visibleFrom(pvs, place + cells[i].center);
+      ASSERT_TRUE(visible);
+      EXPECT_EQ(visible->data(), pvs.cells[i].triangles.data());
+    }
+    EXPECT_FALSE(visibleFrom(pvs, place + glm::dvec3(50)));
+  }
+}
+
+TEST(PrecisionWarning, CountsWhatWideScenesLose) {
+  // A ground at UTM, and something at the origin: no offset serves both.
+  const Ground far = ground(kUtm);
+  EXPECT_EQ(lossOf(far),
+            "of 3200 triangles 864 lose their area by that and 1696 turn by more than 30 degrees");
+  const Scene scene = loadText("a.obj", asObj(far) + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n");
+  EXPECT_EQ(scene.offset, glm::dvec3(0));
+  EXPECT_EQ(warningOf(scene),
+            "single precision steps by 0.5 at coordinates of 4649780, and the median edge is 0.102; of 3201 "
+            "triangles 864 lose their area by that and 0 turn by more than 30 degrees; the scene is too wide "
+            "for its "
+            "detail: cut it into parts");
 }
 
 TEST(PrecisionWarning, WideScenesWithFineDetail) {
@@ -166,7 +273,7 @@ TEST(PrecisionWarning, WideScenesWithFineDetail) {
       warningOf(loadText("a.obj", text)),
       "single precision steps by 0.000977 at coordinates of 10000, and the median edge is 0.102; of 3202 "
       "triangles 1 lose their area by that and 0 turn by more than 30 degrees; the scene is too wide for its "
-      "detail: cut it into parts, and move each to the origin");
+      "detail: cut it into parts");
 }
 
 TEST(PrecisionWarning, SilentForOrdinaryScenes) {
