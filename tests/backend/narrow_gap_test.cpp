@@ -90,7 +90,9 @@ TEST_P(SlitOf, NoRayThroughANarrowerOneCounts) {
   for (const float thickness : {0.0f, 0.1f}) {
     for (const float share : {0.02f, 0.3f, 0.7f, 0.99f}) {
       const Counts counts = pinchedThrough(GetParam(), GetParam() / share, thickness);
-      if (thickness == 0) EXPECT_GT(counts.through, 1900u);
+      if (thickness == 0) {
+        EXPECT_GT(counts.through, 1900u);
+      }
       EXPECT_EQ(counts.pinched, counts.through) << share << " thickness " << thickness;
     }
   }
