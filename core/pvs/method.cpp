@@ -6,18 +6,18 @@
 namespace sightline {
 namespace {
 
-constexpr const char* kNames[] = {"gvs++", "gvs", "random", "raster", "naive"};
+constexpr const char* kMethodNames[] = {"gvs++", "gvs", "random", "raster", "naive"};
 
 }  // namespace
 
 std::string methodName(Method method) {
-  return uint32_t(method) < std::size(kNames) ? kNames[uint32_t(method)] : "unknown";
+  return uint32_t(method) < std::size(kMethodNames) ? kMethodNames[uint32_t(method)] : "unknown";
 }
 
 std::optional<Method> methodOf(const std::string& name) {
-  const auto found = std::find(std::begin(kNames), std::end(kNames), name);
-  if (found == std::end(kNames)) return std::nullopt;
-  return Method(found - std::begin(kNames));
+  const auto found = std::find(std::begin(kMethodNames), std::end(kMethodNames), name);
+  if (found == std::end(kMethodNames)) return std::nullopt;
+  return Method(found - std::begin(kMethodNames));
 }
 
 }  // namespace sightline

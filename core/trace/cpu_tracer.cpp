@@ -135,8 +135,8 @@ Hit CpuTracer::traceThrough(const Ray& ray, std::vector<Hit>& glass) const {
   const Hit best = walk<true>(ray, &glass);
   std::erase_if(glass, [&](const Hit& hit) { return hit.t > best.t; });
   std::ranges::sort(glass, {}, &Hit::triangle);
-  const auto twice = std::ranges::unique(glass, {}, &Hit::triangle);  // spatial splits
-  glass.erase(twice.begin(), twice.end());
+  const auto same = [](const Hit& a, const Hit& b) { return a.triangle == b.triangle; };  // spatial splits
+  glass.erase(std::unique(glass.begin(), glass.end(), same), glass.end());
   return best;
 }
 

@@ -1,6 +1,6 @@
 // Runs every OpenCL kernel on a scene of about 1,000 triangles, to be run under Oclgrind (kernels_test.sh):
-// every method and set, both layouts, and compares what comes out with the device cpu. Exit 1 where it
-// differs.
+// every method and set, both layouts, and compares what comes out with the device cpu. With an argument: on
+// scenes with surfaces and with instances, for which kernels are compiled apart. Exit 1 where it differs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,9 +19,12 @@
 #include "core/gvs/bake_cell.h"
 #include "core/sampling/make_stage_params.h"
 #include "core/sampling/random_segment.h"
+#include "core/scene/masked_triangle.h"
+#include "core/scene/scene_tree.h"
 #include "core/shared/random_ray.h"
 #include "core/shared/set.h"
 #include "core/trace/cpu_tracer.h"
+#include "tests/support/instanced_scene.h"
 #include "tests/support/random_triangles.h"
 
 namespace sightline {
@@ -187,13 +190,47 @@ void printKernels() {
   while (std::getline(list, name, ';')) fmt::print("kernel {}\n", name);
 }
 
-void runAll() {
-  printKernels();
+/// The scene with holes, glass and fronts alone among its triangles.
+Scene withSurfaces(Scene scene) {
+  Surfaces& surfaces = scene.surfaces;
+  const uint32_t mask =
+      addMask(surfaces, 7, 3, {kWrapRepeat, kWrapMirror}, [](uint64_t texel) { return texel % 3 != 0; });
+  for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
+    constexpr uint32_t kWords[] = {0, kSurfaceGlass, kSurfaceFrontOnly, kSurfaceMasked};
+    uint32_t word = kWords[id % 4];
+    if (word == kSurfaceMasked) {
+      word |= uint32_t(surfaces.masked.size());
+      surfaces.masked.push_back(
+          *maskedTriangle(surfaces, mask, {glm::dvec2(0, 0), glm::dvec2(90, 1), glm::dvec2(2, 80)}));
+    }
+    surfaces.words.push_back(word);
+  }
+  return scene;
+}
+
+/// Kernels that are compiled for what a scene needs: surfaces, and two levels of trees.
+void bakeOtherScenes(const Scene& scene, const Bvh& bvh, const ViewCell& cell) {
+  const Scene surfaces = withSurfaces(scene);
+  const Scene instances = testing_support::randomInstances(3, 20, 40);
+  const Bvh two_levels = buildSceneTree(instances);
+  ViewCell middle = cell;
+  middle.center = glm::dvec3(0);
+  for (const uint32_t rays_per_item : {1u, 8u}) {
+    for (const Method method : {Method::kGvspp, Method::kGvs}) {
+      bake(surfaces, bvh, cell, rays_per_item, method, SetKind::kArray);
+      bake(instances, two_levels, middle, rays_per_item, method, SetKind::kHash);
+    }
+  }
+}
+
+void runAll(bool other_scenes) {
   const Scene scene = generateScene("city", 1000, 1);
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   // Large enough to hold a few triangles.
   ViewCell cell = generateCells("city", 1000, 1)[3];
   cell.size += glm::dvec3(10, 5, 10);
+  if (other_scenes) return bakeOtherScenes(scene, bvh, cell);
+  printKernels();
   const vec3 eye(cell.center);
   for (const uint32_t rays_per_item : {1u, 8u}) {
     traceRaysAndViews(scene, bvh, eye, rays_per_item);
@@ -211,9 +248,9 @@ void runAll() {
 }  // namespace
 }  // namespace sightline
 
-int main() {
+int main(int argc, char**) {
   try {
-    sightline::runAll();
+    sightline::runAll(argc > 1);
   } catch (const std::exception& error) {
     fmt::print("{}\n", error.what());
     return 1;

@@ -68,7 +68,8 @@ extern "C" size_t LLVMFuzzerCustomMutator(uint8_t* data, size_t size, size_t max
   using namespace sightline::fuzz;
   std::minstd_rand random(seed);
   const std::vector<Place> sections = sectionsOf(data, size);
-  const bool anywhere = sections.empty() || size > max_size || random() % 4 == 0;
+  // A section needs room to grow: libFuzzer must not be asked for nothing in no room.
+  const bool anywhere = sections.empty() || size >= max_size || random() % 4 == 0;
   size = anywhere ? LLVMFuzzerMutate(data, size, max_size)
                   : mutateSection(data, size, max_size, sections[random() % sections.size()]);
   constexpr unsigned kLeftWrong = 16;  // one of so many keeps its wrong checksums

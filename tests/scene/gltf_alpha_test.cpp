@@ -231,7 +231,7 @@ TEST(GltfAlpha, SaysWhatIsWrongWithAMask) {
          "images[0]: a WebP image that is damaged or cut off");
   expect(maskedSquare(jpegHeader().substr(0, 12)), "images[0]: a JPEG image that is damaged or cut off");
   file = maskedSquare(png);
-  file.document["textures"] = {json::object()};
+  file.document["textures"] = json::array({json::object()});
   expect(file, "textures[0]: has no image that is read");
   file = maskedSquare(png);
   const std::vector<glm::vec2> far = {{0, 1}, {1, NAN}, {1, 0}, {0, 0}};

@@ -98,7 +98,7 @@ SkinnedMesh skinnedMesh(uint64_t seed, int joint_component, int weight_component
   if (inverse_bind) {
     skin["inverseBindMatrices"] = file.addAccessor(file.addView(bytesOf(inverse)), 5126, kJoints, "MAT4");
   }
-  file.document["skins"] = {skin};
+  file.document["skins"] = json::array({skin});
 
   std::vector<glm::dmat4> sum(kVertices, glm::dmat4(0.0));
   std::vector<double> total(kVertices, 0.0);

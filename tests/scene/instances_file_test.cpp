@@ -115,7 +115,7 @@ TEST(InstancesInFiles, StandWhereTheirNodesPutThem) {
     // Alone, the mesh is no instance.
     json kept = file.document["nodes"];
     const json children = kept.back()["children"];
-    kept.back()["children"] = {children[node < 150 ? node : node + 1]};
+    kept.back()["children"] = json::array({children[node < 150 ? node : node + 1]});
     single.document["nodes"] = kept;
     single.document["scenes"] = {{{"nodes", {kept.size() - 1}}}};
     const Scene plain = load(single, false);

@@ -121,8 +121,7 @@ class EmbreeTracer final : public Tracer {
       std::vector<uint32_t> glass;
       trace(rays[i], hits[i].triangle == kNoTriangle ? HUGE_VALF : hits[i].t, &glass);
       std::ranges::sort(glass);
-      const auto twice = std::ranges::unique(glass);
-      glass.erase(twice.begin(), twice.end());
+      glass.erase(std::unique(glass.begin(), glass.end()), glass.end());
       for (const uint32_t triangle : glass) seen.push_back({uint32_t(i), triangle});
     }
     check("trace");
