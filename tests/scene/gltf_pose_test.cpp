@@ -74,7 +74,7 @@ SkinnedMesh skinnedMesh(uint64_t seed, int joint_component, int weight_component
 
   // Node 0: the mesh, somewhere that must not matter. Node 1: what holds the first joints. Joints: nodes 2,
   // 3, ...; the last one stands outside of the scene.
-  file.document["nodes"] = {randomPlace(random).node};
+  file.document["nodes"] = json::array({randomPlace(random).node});
   file.document["nodes"][0].update(json{{"mesh", 0}, {"skin", 0}});
   file.document["scenes"] = {{{"nodes", {1}}}};
   std::vector<glm::dmat4> world(kJoints + 2);
