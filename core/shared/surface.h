@@ -60,32 +60,16 @@ SL_STRUCT(Passage) {
 
 /// For a ray that intersectTriangle says hits the triangle with these corners.
 SL_FUNC Passage passageOf(ShearedRay ray, vec3 v0, vec3 v1, vec3 v2) {
-  vec3 a = shearVertex(ray, v0);
-  vec3 b = shearVertex(ray, v1);
-  vec3 c = shearVertex(ray, v2);
+  PreciseEdges edges = preciseEdges(shearVertex(ray, v0), shearVertex(ray, v1), shearVertex(ray, v2));
   Passage result;
 #if SL_FP64
-  double ax = a.x;
-  double ay = a.y;
-  double bx = b.x;
-  double by = b.y;
-  double cx = c.x;
-  double cy = c.y;
-  double u = cx * by - cy * bx;
-  double v = ax * cy - ay * cx;
-  double w = bx * ay - by * ax;
-  double det = u + v + w;
-  result.share_b = slFloat(slDivide(v, det));
-  result.share_c = slFloat(slDivide(w, det));
-  bool positive = det > 0.0;
+  result.share_b = slFloat(slDivide(edges.v, edges.det));
+  result.share_c = slFloat(slDivide(edges.w, edges.det));
+  bool positive = edges.det > 0.0;
 #else
-  TwoFloat u = differenceOfProducts(c.x, b.y, c.y, b.x);
-  TwoFloat v = differenceOfProducts(a.x, c.y, a.y, c.x);
-  TwoFloat w = differenceOfProducts(b.x, a.y, b.y, a.x);
-  TwoFloat det = addTwoFloats(addTwoFloats(u, v), w);
-  result.share_b = divideTwoFloats(v, det);
-  result.share_c = divideTwoFloats(w, det);
-  bool positive = det.high > 0.0f;
+  result.share_b = divideTwoFloats(edges.v, edges.det);
+  result.share_c = divideTwoFloats(edges.w, edges.det);
+  bool positive = edges.det.high > 0.0f;
 #endif
   // det is minus the doubled area on the plane across the depth axis, counter-clockwise positive; the front
   // is counter-clockwise for who looks against that axis, as rays do whose direction along it is negative.

@@ -78,8 +78,24 @@ SL_FUNC vec3 shearVertex(ShearedRay ray, vec3 vertex) {
   return vec3(x - ray.shear.x * z, y - ray.shear.y * z, z);
 }
 
-/// Depth of the hit in double; 0 where there is none.
-SL_FUNC float preciseDepth(vec3 a, vec3 b, vec3 c) {
+/// The edge functions of three sheared vertices, and their sum, in double or, where a device has none, in two
+/// floats each.
+SL_STRUCT(PreciseEdges) {
+#if SL_FP64
+  double u;
+  double v;
+  double w;
+  double det;
+#else
+  TwoFloat u;
+  TwoFloat v;
+  TwoFloat w;
+  TwoFloat det;
+#endif
+};
+
+SL_FUNC PreciseEdges preciseEdges(vec3 a, vec3 b, vec3 c) {
+  PreciseEdges edges;
 #if SL_FP64
   double ax = a.x;
   double ay = a.y;
@@ -87,28 +103,37 @@ SL_FUNC float preciseDepth(vec3 a, vec3 b, vec3 c) {
   double by = b.y;
   double cx = c.x;
   double cy = c.y;
-  double u = cx * by - cy * bx;
-  double v = ax * cy - ay * cx;
-  double w = bx * ay - by * ax;
-  if (min(u, min(v, w)) < 0.0 && max(u, max(v, w)) > 0.0) {
+  edges.u = cx * by - cy * bx;
+  edges.v = ax * cy - ay * cx;
+  edges.w = bx * ay - by * ax;
+  edges.det = edges.u + edges.v + edges.w;
+#else
+  edges.u = differenceOfProducts(c.x, b.y, c.y, b.x);
+  edges.v = differenceOfProducts(a.x, c.y, a.y, c.x);
+  edges.w = differenceOfProducts(b.x, a.y, b.y, a.x);
+  edges.det = addTwoFloats(addTwoFloats(edges.u, edges.v), edges.w);
+#endif
+  return edges;
+}
+
+/// Depth of the hit in double; 0 where there is none.
+SL_FUNC float preciseDepth(vec3 a, vec3 b, vec3 c) {
+  PreciseEdges e = preciseEdges(a, b, c);
+#if SL_FP64
+  if (min(e.u, min(e.v, e.w)) < 0.0 && max(e.u, max(e.v, e.w)) > 0.0) {
     return 0.0f;
   }
-  double det = u + v + w;
   double az = a.z;
   double bz = b.z;
   double cz = c.z;
-  return det == 0.0 ? 0.0f : slFloat(slDivide(u * az + v * bz + w * cz, det));
+  return e.det == 0.0 ? 0.0f : slFloat(slDivide(e.u * az + e.v * bz + e.w * cz, e.det));
 #else
-  TwoFloat u = differenceOfProducts(c.x, b.y, c.y, b.x);
-  TwoFloat v = differenceOfProducts(a.x, c.y, a.y, c.x);
-  TwoFloat w = differenceOfProducts(b.x, a.y, b.y, a.x);
-  if (min(u.high, min(v.high, w.high)) < 0.0f && max(u.high, max(v.high, w.high)) > 0.0f) {
+  if (min(e.u.high, min(e.v.high, e.w.high)) < 0.0f && max(e.u.high, max(e.v.high, e.w.high)) > 0.0f) {
     return 0.0f;
   }
-  TwoFloat det = addTwoFloats(addTwoFloats(u, v), w);
   TwoFloat sum =
-      addTwoFloats(addTwoFloats(scaleTwoFloat(u, a.z), scaleTwoFloat(v, b.z)), scaleTwoFloat(w, c.z));
-  return det.high == 0.0f ? 0.0f : divideTwoFloats(sum, det);
+      addTwoFloats(addTwoFloats(scaleTwoFloat(e.u, a.z), scaleTwoFloat(e.v, b.z)), scaleTwoFloat(e.w, c.z));
+  return e.det.high == 0.0f ? 0.0f : divideTwoFloats(sum, e.det);
 #endif
 }
 

@@ -1,6 +1,5 @@
 // Instances as a user meets them: a plant of bays that repeat, what info and a bake's report say of it, and
-// that
-// --flatten makes no other set.
+// that --flatten makes no other set.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
