@@ -69,11 +69,12 @@ CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& e
   Device& device = session.parts().device(inputs.params.method, hole);
   std::shared_ptr<Session> open;
   if (!inputs.doors.empty()) {
-    open = std::make_shared<Session>(seenThrough(session.scene(), inputs.doors), session.options());
+    SessionOptions options = session.options();
+    options.see_through.clear();  // as the session's scene is already
+    open = std::make_shared<Session>(seenThrough(session.scene(), inputs.doors), options);
   }
   return [&, open, hole](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
     BakeTrace trace;
-    const BakeHooks hooks{progress, events.stop, nullptr};
     CellPvs pvs = bakeCell(device, session.scene(), cell, index, inputs.params,
                            {progress, events.stop, events.grown ? &trace : nullptr});
     if (events.leaks && hole == 0) {
@@ -81,7 +82,8 @@ CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& e
     }
     if (open) {
       Device& glass_doors = open->parts().device(inputs.params.method, hole);
-      pvs.open = bakeOpen(glass_doors, open->scene(), index, inputs.params, pvs, hooks);
+      pvs.open =
+          bakeOpen(glass_doors, open->scene(), index, inputs.params, pvs, {progress, events.stop, nullptr});
     }
     if (events.grown) events.grown(index, std::move(trace));
     if (!inputs.has_witnesses) {

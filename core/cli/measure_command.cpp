@@ -200,7 +200,9 @@ void run(const MeasureCommand& command) {
   std::vector<PvsFile> files = loadSets(command, loaded);
   Session session(inState(std::move(loaded), files.front(), command.doors), {.device = command.device});
   const Scene& scene = session.scene();
-  for (size_t i = 0; i < files.size(); ++i) files[i] = inState(files[i], command.doors, command.pvs[i]);
+  for (size_t i = 0; i < files.size(); ++i) {
+    files[i] = inState(std::move(files[i]), command.doors, command.pvs[i]);
+  }
   const std::vector<uint32_t> cells = cellsToMeasure(command, files.front());
   Tracer& tracer = session.parts().tracer();
 

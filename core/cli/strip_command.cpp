@@ -93,8 +93,6 @@ std::vector<bool> seenOf(const PvsFile& pvs) {
   std::vector<bool> seen(pvs.triangle_count, false);
   for (const CellPvs& cell : pvs.cells) {
     for (const uint32_t id : cell.triangles) seen[id] = true;
-    if (!cell.open) continue;
-    for (const uint32_t id : cell.open->triangles) seen[id] = true;
     if (!cell.open) continue;  // what open doors show stays, too
     for (const uint32_t id : cell.open->triangles) seen[id] = true;
   }

@@ -47,7 +47,7 @@ std::string reportText(const VerifyCommand& command, const PvsFile& pvs,
 }
 
 /// Writes the sets with better witnesses and without what is disproved.
-void writeBetter(const VerifyCommand& command, PvsFile& pvs, PvsFile baked,
+void writeBetter(const VerifyCommand& command, PvsFile& pvs, PvsFile& baked,
                  const std::vector<CellProofs>& cells) {
   uint64_t removed = 0;
   for (size_t i = 0; i < cells.size(); ++i) {
@@ -90,7 +90,7 @@ void run(const VerifyCommand& command) {
     OutputFile probe(command.output);  // fail before the work, not after it
   }
   const TextOutputs outputs({&command.report, 1});
-  const PvsFile baked = loadFinishedCells(command.pvs);
+  PvsFile baked = loadFinishedCells(command.pvs);
   PvsFile pvs = inState(baked, command.doors, command.pvs);
   if (!pvs.has_witnesses) {
     throw Error(fmt::format("{}: has no witnesses; bake it with --witnesses", command.pvs.string()));

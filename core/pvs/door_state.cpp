@@ -40,17 +40,17 @@ CellPvs inState(const CellPvs& cell, DoorState state) {
   return result;
 }
 
-PvsFile inState(const PvsFile& pvs, DoorState state, const std::filesystem::path& file) {
+PvsFile inState(PvsFile pvs, DoorState state, const std::filesystem::path& file) {
   if (state == DoorState::kOpen && pvs.doors.empty()) {
     throw Error(
         fmt::format("{}: was baked without doors, so there is nothing that opens; bake it with --doors",
                     file.string()),
         kExitUsage);
   }
-  PvsFile result = pvs;
-  result.doors.clear();
-  for (CellPvs& cell : result.cells) cell = inState(cell, state);
-  return result;
+  if (pvs.doors.empty()) return pvs;
+  pvs.doors.clear();
+  for (CellPvs& cell : pvs.cells) cell = inState(cell, state);
+  return pvs;
 }
 
 }  // namespace sightline

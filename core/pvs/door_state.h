@@ -17,6 +17,6 @@ std::optional<DoorState> doorStateOf(const std::string& name);
 CellPvs inState(const CellPvs& cell, DoorState state);
 /// All cells so, and no doors. Throws Error (wrong usage) for kOpen where the bake has no doors; file: for
 /// the message.
-PvsFile inState(const PvsFile& pvs, DoorState state, const std::filesystem::path& file);
+PvsFile inState(PvsFile pvs, DoorState state, const std::filesystem::path& file);
 
 }  // namespace sightline

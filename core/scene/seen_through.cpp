@@ -8,8 +8,7 @@ namespace sightline {
 
 Scene seenThrough(Scene scene, std::span<const NamedTriangles> glass) {
   if (glass.empty()) return scene;
-  scene = flatten(std::move(scene));  // glass is of single triangles, not of meshes
-  scene = flatten(std::move(scene));  // surfaces are kept for each triangle
+  scene = flatten(std::move(scene));  // surfaces are kept for each triangle, not for those of meshes
   scene.surfaces.words.resize(scene.triangleCount(), 0);
   for (const NamedTriangles& range : glass) {
     for (uint32_t id = range.first; id - range.first < range.count; ++id) {

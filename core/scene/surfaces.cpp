@@ -35,17 +35,6 @@ SurfaceCounts countSurfaces(const Surfaces& surfaces) {
   return counts;
 }
 
-std::string featureNames(const SurfaceFeatures& features) {
-  std::string names;
-  const auto add = [&](bool has, const char* name) {
-    if (has) names += (names.empty() ? "" : ", ") + std::string(name);
-  };
-  add(features.masks, "masks");
-  add(features.glass, "glass");
-  add(features.sides, "sides");
-  return names.empty() ? "none" : names;
-}
-
 std::vector<uint32_t> packSurfaces(const Surfaces& surfaces, const std::vector<uint32_t>& order) {
   const uint64_t masked = kSurfaceHeaderWords + uint64_t(order.size());
   const uint64_t masks = masked + surfaces.masked.size() * kMaskedTriangleWords;

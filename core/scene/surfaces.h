@@ -1,6 +1,5 @@
 #pragma once
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "core/shared/surface.h"
@@ -40,9 +39,6 @@ struct SurfaceCounts {
   uint64_t masked = 0, glass = 0, front_only = 0;
 };
 SurfaceCounts countSurfaces(const Surfaces& surfaces);
-
-/// "masks, glass, sides"; "none".
-std::string featureNames(const SurfaceFeatures& features);
 
 /// All surfaces as devices read them. order: the triangles of the tree's leaves (Bvh::references).
 std::vector<uint32_t> packSurfaces(const Surfaces& surfaces, const std::vector<uint32_t>& order);

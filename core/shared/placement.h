@@ -2,7 +2,7 @@
 // them.
 //
 // A vertex of an instance is *defined* as what placeVertex makes of the mesh's vertex: four float operations
-// an axis in a fixed order. Whoever writes the instances out as plain triangles (core/scene/flatten.h) and
+// an axis in a fixed order. Whoever writes the instances out as plain triangles (core/scene/instances.h) and
 // every device that meets a triangle in a mesh's leaf computes it so, bit for bit, and tests that triangle
 // with the ray as it is in the world. So a hit and its t are those of the flattened scene. Only the way to
 // the leaf is another: through the mesh's own boxes, by a ray that is taken into the mesh's space (localRay).

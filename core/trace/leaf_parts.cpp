@@ -75,8 +75,9 @@ LeafParts splitBySurface(const LeafParts& parts, const Surfaces& surfaces) {
     const auto begin = result.ids.begin() + part.first, end = begin + part.count;
     const auto middle = std::stable_partition(begin, end, [&](uint32_t id) { return surfaces.of(id) == 0; });
     const auto opaque = uint32_t(middle - begin);
-    if (opaque > 0) result.parts.push_back({part.first, opaque, true});
-    if (opaque < part.count) result.parts.push_back({part.first + opaque, part.count - opaque, false});
+    if (opaque > 0) result.parts.push_back({part.first, opaque, true, part.root});
+    if (opaque < part.count)
+      result.parts.push_back({part.first + opaque, part.count - opaque, false, part.root});
   }
   return result;
 }

@@ -86,7 +86,10 @@ class EmbreeTracer final : public Tracer {
  public:
   /// Scenes with instances are written out.
   explicit EmbreeTracer(const Scene& scene)
-      : library_(rtcNewDevice(nullptr)), scene_(rtcNewScene(library_.get())), surfaces_(scene.surfaces) {
+      : library_(rtcNewDevice(nullptr)),
+        scene_(rtcNewScene(library_.get())),
+        surfaces_(scene.surfaces),
+        has_glass_(featuresOf(scene.surfaces).glass) {
     const EmbreeGeometry mesh(rtcNewGeometry(library_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     const Scene written = scene.hasInstances() ? flatten(scene) : Scene();
     const Scene& plain = scene.hasInstances() ? written : scene;
@@ -111,11 +114,11 @@ class EmbreeTracer final : public Tracer {
     check("trace");
   }
 
-  bool hasGlass() const override { return featuresOf(surfaces_).glass; }
+  bool hasGlass() const override { return has_glass_; }
 
   std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) override {
     std::vector<SeenThrough> seen;
-    if (!featuresOf(surfaces_).glass) return seen;
+    if (!has_glass_) return seen;
     for (size_t i = 0; i < rays.size(); ++i) {
       if (!hasDirection(rays[i])) continue;
       std::vector<uint32_t> glass;
@@ -176,6 +179,7 @@ class EmbreeTracer final : public Tracer {
   EmbreeLibrary library_;
   EmbreeScene scene_;
   Surfaces surfaces_;
+  bool has_glass_;
 };
 
 }  // namespace

@@ -36,15 +36,16 @@ ClBuffer uploadTriangles(OpenClContext& context, const Scene& scene, const Bvh& 
   return buffer;
 }
 
+/// The compiler's options for our kernels.
+std::string kernelOptions(uint32_t rays_per_item, const SurfaceFeatures& features) {
+  return kClBuildOptions + (" -DSL_PACKET=" + std::to_string(rays_per_item)) +
+         (features.any() ? " -DSL_HAS_SURFACES=1" : "") + (features.glass ? " -DSL_HAS_GLASS=1" : "");
+}
+
 }  // namespace
 
 uint32_t raysPerItem(const OpenClContext& context) {
   return context.isCpu() ? 8 : 1;
-}
-
-std::string kernelOptions(uint32_t rays_per_item, const SurfaceFeatures& features) {
-  return kClBuildOptions + (" -DSL_PACKET=" + std::to_string(rays_per_item)) +
-         (features.any() ? " -DSL_HAS_SURFACES=1" : "") + (features.glass ? " -DSL_HAS_GLASS=1" : "");
 }
 
 std::string kernelOptionsFor(const Bvh& bvh) {

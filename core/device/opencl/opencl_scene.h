@@ -24,10 +24,6 @@ struct OpenClScene {
 /// Rays that a work item traces where the device is fastest: packets of 8 on CPUs, 1 elsewhere.
 uint32_t raysPerItem(const OpenClContext& context);
 
-/// The compiler's options for our kernels, which trace so many rays a work item, 8 or 1, in scenes with these
-/// surfaces.
-std::string kernelOptions(uint32_t rays_per_item, const SurfaceFeatures& features = {});
-
 /// The further options that kernels need to trace a tree of two levels; none for others.
 std::string kernelOptionsFor(const Bvh& bvh);
 
