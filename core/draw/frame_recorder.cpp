@@ -5,8 +5,13 @@
 namespace sightline {
 
 FrameRecorder::FrameRecorder(const Drawables& drawables, const Camera& camera, QueryBackend& backend,
-                             std::vector<uint32_t>& drawn)
-    : drawables_(drawables), camera_(camera), backend_(backend), guard_(camera), drawn_(drawn) {
+                             std::vector<uint32_t>& drawn, const Schedule& schedule)
+    : drawables_(drawables),
+      camera_(camera),
+      backend_(backend),
+      guard_(camera),
+      drawn_(drawn),
+      schedule_(schedule) {
   drawn_.clear();
   backend_.beginFrame(camera);
 }
@@ -46,6 +51,7 @@ void FrameRecorder::submitNow(const std::vector<uint32_t>& draws) {
     counts.query_boxes += boxes.size();
   }
   submitted_ = backend_.submit(draws, queries);
+  if (!queries.empty()) submit_ends_.push_back(submitted_ + queries.size());
   ++counts.submits;
   counts.queries += queries.size();
   counts.draws += draws.size();
@@ -55,8 +61,19 @@ void FrameRecorder::submitNow(const std::vector<uint32_t>& draws) {
   asked_.clear();
 }
 
+bool FrameRecorder::arrived(QueryId query, uint64_t ticks) {
+  return schedule_.fixed ? ticks >= schedule_.ticks : backend_.arrived(query);
+}
+
 bool FrameRecorder::visible(QueryId query) {
-  if (!backend_.arrived(query)) ++counts.waits;
+  if (schedule_.fixed) {
+    if (query >= waited_for_) {
+      ++counts.waits;
+      waited_for_ = *std::upper_bound(submit_ends_.begin(), submit_ends_.end(), query);
+    }
+  } else if (!backend_.arrived(query)) {
+    ++counts.waits;
+  }
   return backend_.visible(query);
 }
 

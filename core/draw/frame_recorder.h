@@ -4,6 +4,7 @@
 #include "core/draw/box_guard.h"
 #include "core/draw/cull_method.h"
 #include "core/draw/drawables.h"
+#include "core/draw/schedule.h"
 
 namespace sightline {
 
@@ -17,7 +18,7 @@ class FrameRecorder {
  public:
   /// Begins the frame. drawn: gets what is drawn, in order.
   FrameRecorder(const Drawables& drawables, const Camera& camera, QueryBackend& backend,
-                std::vector<uint32_t>& drawn);
+                std::vector<uint32_t>& drawn, const Schedule& schedule = {});
 
   /// Puts a drawable into the queue of its kind. At most once a frame.
   void draw(uint32_t drawable);
@@ -32,7 +33,11 @@ class FrameRecorder {
   /// returns without queries means nothing. Nothing to submit: does not.
   QueryId submit(bool draws = true);
 
-  /// The answer, waited for; waits are counted if it has not arrived.
+  /// Whether the answer has arrived, by the schedule. ticks: since its submit, of Schedule::ticks.
+  bool arrived(QueryId query, uint64_t ticks);
+
+  /// The answer, waited for. A wait is counted where it has not arrived or, by the fixed schedule, for the first answer
+  /// of each submit.
   bool visible(QueryId query);
 
   /// Draws all that waits and ends the frame. Queries asked for go with it.
@@ -54,7 +59,10 @@ class FrameRecorder {
   std::vector<uint32_t>& drawn_;
   std::vector<uint32_t> render_queue_, masked_, blended_;
   std::vector<std::vector<AxisBox>> asked_;
-  QueryId submitted_ = 0;
+  Schedule schedule_;
+  QueryId submitted_ = 0;  ///< the first query of the last submit
+  QueryId waited_for_ = 0;  ///< queries with lower numbers have been waited for
+  std::vector<QueryId> submit_ends_;  ///< one past the last query of each submit, ascending
 };
 
 }  // namespace sightline
