@@ -1,5 +1,6 @@
-// Tight bounds are based on: O. Mattausch, J. Bittner and M. Wimmer, CHC++: Coherent Hierarchical Culling Revisited,
-// 2008, section 5.2: boxes a few levels below a node, as long as their surfaces do not add up to much more than its own.
+// Tight bounds are based on: O. Mattausch, J. Bittner and M. Wimmer, CHC++: Coherent Hierarchical Culling
+// Revisited, 2008, section 5.2: boxes a few levels below a node, as long as their surfaces do not add up to
+// much more than its own.
 #include "bvh/box_tree.h"
 
 #include <stdexcept>
@@ -27,7 +28,8 @@ class BoxTreeMaker {
     if (from.child[1] == kNoChild) return addLeaf(from.child[0], parent);  // a tree of one box
     const uint32_t index = addNode(parent);
     for (int i = 0; i < 2; ++i) {
-      const uint32_t child = from.count[i] > 0 ? addLeaf(from.child[i], index) : addInner(from.child[i], index);
+      const uint32_t child =
+          from.count[i] > 0 ? addLeaf(from.child[i], index) : addInner(from.child[i], index);
       tree_.nodes[index].children[i] = child;
     }
     const AxisBox &a = tree_.nodes[tree_.nodes[index].children[0]].box,

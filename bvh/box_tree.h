@@ -33,15 +33,16 @@ struct BoxTree {
   std::vector<BoxNode> nodes;  ///< root first, depth first: children have higher numbers than their parent
   std::vector<AxisBox> tight;
 
-  /// Boxes that together hold what the node holds: tighter than its own box, not much more to draw. A leaf's is its own.
+  /// Boxes that together hold what the node holds: tighter than its own box, not much more to draw. A leaf's
+  /// is its own.
   std::span<const AxisBox> tightOf(const BoxNode& node) const {
     return {tight.data() + node.first_tight, node.tight_count};
   }
 };
 
-/// Builds the tree. Boxes must be finite, low <= high, and may be the same; the same boxes give the same tree on any
-/// number of threads (0: all cores). No boxes give no nodes. Throws std::length_error for 2^31 boxes or more, and
-/// std::bad_alloc.
+/// Builds the tree. Boxes must be finite, low <= high, and may be the same; the same boxes give the same tree
+/// on any number of threads (0: all cores). No boxes give no nodes. Throws std::length_error for 2^31 boxes
+/// or more, and std::bad_alloc.
 BoxTree buildBoxTree(std::span<const AxisBox> boxes, const TightBounds& tight = {}, int threads = 0);
 
 }  // namespace sightline

@@ -1,7 +1,8 @@
-// Based on: J. Pernsteiner, Ensuring the Effectiveness of CHC++ in Vulkan, 2020, algorithms 4.1 to 4.3. Where we differ
-// from what is printed, as it draws leaves twice, never goes down visible nodes, or asks too much:
+// Based on: J. Pernsteiner, Ensuring the Effectiveness of CHC++ in Vulkan, 2020, algorithms 4.1 to 4.3. Where
+// we differ from what is printed, as it draws leaves twice, never goes down visible nodes, or asks too much:
 // - visible nodes are opened whether or not they are leaves (4.1, line 20 stands outside of the test);
-// - whether a node was visible counts for the frame before only, and each visit starts with "no" (VisitStates);
+// - whether a node was visible counts for the frame before only, and each visit starts with "no"
+// (VisitStates);
 // - leaves assumed to be visible are pulled up like those that were asked about;
 // - a re-tested leaf that is visible is not opened again, as it is drawn;
 // - re-tests are submitted after the loop that records them (4.2, lines 9-10);
@@ -15,8 +16,9 @@
 
 namespace sightline {
 
-ChcPlusTraversal::ChcPlusTraversal(const DrawScene& scene, const ChcOptions& options, uint64_t seed, VisitStates& states,
-                                   FrameRecorder& frame, const Camera& camera, uint64_t number)
+ChcPlusTraversal::ChcPlusTraversal(const DrawScene& scene, const ChcOptions& options, uint64_t seed,
+                                   VisitStates& states, FrameRecorder& frame, const Camera& camera,
+                                   uint64_t number)
     : tree_(scene.tree),
       options_(options),
       seed_(seed),

@@ -12,14 +12,16 @@ namespace {
 /// One frame.
 class ChcTraversal {
  public:
-  ChcTraversal(const DrawScene& scene, VisitStates& states, FrameRecorder& frame, const Camera& camera, uint64_t number)
+  ChcTraversal(const DrawScene& scene, VisitStates& states, FrameRecorder& frame, const Camera& camera,
+               uint64_t number)
       : tree_(scene.tree), states_(states), frame_(frame), number_(number), nodes_(scene.tree, camera) {
     if (!tree_.nodes.empty()) nodes_.push(0);
   }
 
   void run() {
     while (!nodes_.empty() || !asked_.empty()) {
-      while (!asked_.empty() && (nodes_.empty() || frame_.arrived(asked_.front().query, ticks_ - asked_.front().tick))) {
+      while (!asked_.empty() &&
+             (nodes_.empty() || frame_.arrived(asked_.front().query, ticks_ - asked_.front().tick))) {
         answer();
       }
       if (nodes_.empty()) continue;

@@ -32,7 +32,8 @@ ChcOptions plainChc() {
   return options;
 }
 
-std::unique_ptr<CullMethod> cullChcPlus(const DrawScene& scene, const ChcOptions& options, const Schedule& schedule) {
+std::unique_ptr<CullMethod> cullChcPlus(const DrawScene& scene, const ChcOptions& options,
+                                        const Schedule& schedule) {
   return std::make_unique<ChcPlusCulled>(scene, options, schedule);
 }
 

@@ -10,7 +10,8 @@ class FrustumCulled : public CullMethod {
  public:
   explicit FrustumCulled(const DrawScene& scene) : scene_(scene) {}
 
-  FrameCounts drawFrame(const Camera& camera, uint64_t, QueryBackend& backend, std::vector<uint32_t>& drawn) override {
+  FrameCounts drawFrame(const Camera& camera, uint64_t, QueryBackend& backend,
+                        std::vector<uint32_t>& drawn) override {
     FrameRecorder frame(scene_.drawables, camera, backend, drawn);
     frame.counts.node_visits = visitFrustum(scene_.tree, camera, frame.guard().frustum(),
                                             [&](const BoxNode& leaf) { frame.draw(leaf.item); });

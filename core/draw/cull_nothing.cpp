@@ -9,7 +9,8 @@ class NothingCulled : public CullMethod {
  public:
   explicit NothingCulled(const DrawScene& scene) : scene_(scene) {}
 
-  FrameCounts drawFrame(const Camera& camera, uint64_t, QueryBackend& backend, std::vector<uint32_t>& drawn) override {
+  FrameCounts drawFrame(const Camera& camera, uint64_t, QueryBackend& backend,
+                        std::vector<uint32_t>& drawn) override {
     FrameRecorder frame(scene_.drawables, camera, backend, drawn);
     for (uint32_t d = 0; d < scene_.drawables.list.size(); ++d) frame.draw(d);
     frame.finish();

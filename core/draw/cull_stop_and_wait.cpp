@@ -10,7 +10,8 @@ class StopAndWaitCulled : public CullMethod {
  public:
   StopAndWaitCulled(const DrawScene& scene, const Schedule& schedule) : scene_(scene), schedule_(schedule) {}
 
-  FrameCounts drawFrame(const Camera& camera, uint64_t, QueryBackend& backend, std::vector<uint32_t>& drawn) override {
+  FrameCounts drawFrame(const Camera& camera, uint64_t, QueryBackend& backend,
+                        std::vector<uint32_t>& drawn) override {
     FrameRecorder frame(scene_.drawables, camera, backend, drawn, schedule_);
     NodeQueue queue(scene_.tree, camera);
     if (!scene_.tree.nodes.empty()) queue.push(0);

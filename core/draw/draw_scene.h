@@ -11,7 +11,8 @@ struct DrawScene {
 };
 
 /// partitionScene and a tree over its boxes; throws as they do.
-DrawScene makeDrawScene(const Scene& scene, const PartitionOptions& options = {}, const TightBounds& tight = {});
+DrawScene makeDrawScene(const Scene& scene, const PartitionOptions& options = {},
+                        const TightBounds& tight = {});
 
 /// The same over drawables that there are already.
 DrawScene makeDrawScene(Drawables drawables, const TightBounds& tight = {}, int threads = 0);

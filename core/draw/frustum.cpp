@@ -1,7 +1,8 @@
-// Error analysis, u = 2^-24. clipPosition rounds the difference to the eye by u of itself, the three products by u
-// each, and their two sums: a coordinate of the result errs by at most 6 u of the sum of |factor| * |difference|. x, y
-// and w of a triangle's corners are compared by what cuts it, with another rounding. 2^-20 = 16 u of the same sums, with
-// both vectors' factors in them, leaves a factor of 2; the doubles here err by far less.
+// Error analysis, u = 2^-24. clipPosition rounds the difference to the eye by u of itself, the three products
+// by u each, and their two sums: a coordinate of the result errs by at most 6 u of the sum of |factor| *
+// |difference|. x, y and w of a triangle's corners are compared by what cuts it, with another rounding. 2^-20
+// = 16 u of the same sums, with both vectors' factors in them, leaves a factor of 2; the doubles here err by
+// far less.
 #include "core/draw/frustum.h"
 
 #include <cmath>
@@ -21,7 +22,8 @@ struct Reach {
   double least = 0, largest = 0, size = 0;
 };
 
-Reach reachOf(const glm::dvec3& normal, const glm::dvec3& weights, const glm::dvec3& eye, const AxisBox& box) {
+Reach reachOf(const glm::dvec3& normal, const glm::dvec3& weights, const glm::dvec3& eye,
+              const AxisBox& box) {
   Reach reach;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = box.low[axis] - eye[axis], high = box.high[axis] - eye[axis];

@@ -12,8 +12,8 @@ enum class FrustumSide {
 };
 
 /// Tests boxes against the image's four edges and the near plane. Errs to one side only: what clipPosition
-/// (core/shared/camera.h), in single precision, takes into the image is never outside. Exact up to 2^-20 of the
-/// box's distance from the eye, at any scale.
+/// (core/shared/camera.h), in single precision, takes into the image is never outside. Exact up to 2^-20 of
+/// the box's distance from the eye, at any scale.
 class Frustum {
  public:
   explicit Frustum(const Camera& camera);

@@ -85,7 +85,8 @@ class Partition {
     return sizes;
   }
 
-  void addSubtree(const Tree& tree, uint32_t index, uint32_t object, AlphaKind alpha, std::span<const uint32_t> ids) {
+  void addSubtree(const Tree& tree, uint32_t index, uint32_t object, AlphaKind alpha,
+                  std::span<const uint32_t> ids) {
     if (tree.sizes[index] <= options_.split) {
       std::vector<uint32_t> part;
       collect(tree, index, ids, part);
@@ -103,7 +104,8 @@ class Partition {
     }
   }
 
-  static void collect(const Tree& tree, uint32_t index, std::span<const uint32_t> ids, std::vector<uint32_t>& part) {
+  static void collect(const Tree& tree, uint32_t index, std::span<const uint32_t> ids,
+                      std::vector<uint32_t>& part) {
     const BvhNode2& node = tree.bvh.nodes2[index];
     for (int i = 0; i < 2; ++i) {
       if (node.child[i] == kNoChild) continue;

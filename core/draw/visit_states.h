@@ -7,8 +7,9 @@ namespace sightline {
 
 /// What a method of the CHC family remembers of a node.
 struct VisitState {
-  uint64_t visited = 0;        ///< frame of the last visit, plus one; 0: never
-  bool visible = false;        ///< in that frame, as far as is known: of inner nodes by what is below (pull-up) alone
+  uint64_t visited = 0;  ///< frame of the last visit, plus one; 0: never
+  bool visible =
+      false;  ///< in that frame, as far as is known: of inner nodes by what is below (pull-up) alone
   uint32_t hidden_frames = 0;  ///< so many answers in a row were "hidden"
   uint64_t next_test = 0;      ///< leaves: the frame in which to ask again while it stays visible
 };
