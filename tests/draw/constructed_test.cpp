@@ -98,16 +98,20 @@ TEST(ConstructedCounts, OneQueryIsEnoughForAllBehindTheWall) {
       for (uint64_t f = 0; f < 60; ++f) {
         std::vector<uint32_t> drawn;
         const FrameCounts counts = method->drawFrame(camera, f, backend, drawn);
-        if (f == 0) continue;
+        if (f < 8) continue;  // first nothing hides; what showed then is taken for visible for a while
         EXPECT_EQ(counts.queries - counts.retest_queries, 1u) << "frame " << f;
         EXPECT_EQ(counts.node_visits, 3u);
         EXPECT_EQ(drawn, std::vector<uint32_t>{0});
-        if (options.batching && counts.retest_queries == 0) EXPECT_EQ(counts.submits, 1u);
-        if (options.batching && counts.retest_queries == 1) EXPECT_LE(counts.submits, 2u);
+        if (options.batching && counts.retest_queries == 0) {
+          EXPECT_EQ(counts.submits, 1u);
+        }
+        if (options.batching && counts.retest_queries == 1) {
+          EXPECT_LE(counts.submits, 2u);
+        }
         retests += counts.retest_queries;
       }
-      EXPECT_GE(retests, 9u);  // 59 frames, one in six, the first after 0 to 5
-      EXPECT_LE(retests, 10u);
+      EXPECT_GE(retests, 8u);  // in 52 frames, one in six
+      EXPECT_LE(retests, 9u);
     }
   }
 }
@@ -143,7 +147,9 @@ TEST_P(Constructed, BoxAroundTheCameraHidesAllOutside) {
   }
   const Stage stage{std::move(objects)};
   const auto frame = look(stage, cameraAt(stage.parts, {0.2, 0.1, 0.3}, {0.3, 0.1, -1}));
-  if (asks()) EXPECT_EQ(frame.drawn, std::set<uint32_t>{0});
+  if (asks()) {
+    EXPECT_EQ(frame.drawn, std::set<uint32_t>{0});
+  }
 }
 
 TEST_P(Constructed, AllBehindTheCameraCostsNothing) {
@@ -234,7 +240,7 @@ TEST(ConstructedCounts, CutsInTheNumbersOfFramesForgetWhatWasSeen) {
     for (uint64_t f = 0; f < 3; ++f) method->drawFrame(camera, f, backend, drawn);
     const FrameCounts after = method->drawFrame(camera, 9, backend, drawn);
     EXPECT_EQ(after.retest_queries, first.retest_queries) << c.name;
-    EXPECT_EQ(after.node_visits, first.node_visits) << c.name;
+    EXPECT_EQ(first.retest_queries, 0u) << c.name;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/splitmix.h"
+#include "core/draw/box_guard.h"
 #include "tests/draw/draw_cases.h"
 #include "tests/draw/method_cases.h"
 
@@ -89,7 +90,9 @@ void expectSound(const Walk& walk, const Replay& replay, bool culls) {
     for (const uint32_t d : replay.drawn[f]) {
       EXPECT_TRUE(once.insert(d).second) << "frame " << f << " draws " << d << " twice";
       const Drawable& drawable = walk.parts.drawables.list[d];
-      if (culls) EXPECT_NE(frustum.sideOf(drawable.box), FrustumSide::outside);
+      if (culls) {
+        EXPECT_NE(frustum.sideOf(drawable.box), FrustumSide::outside);
+      }
       EXPECT_GE(int(drawable.alpha), kind) << "opaque, masked, blended";
       kind = int(drawable.alpha);
       triangles += drawable.triangle_count;
@@ -281,7 +284,7 @@ class ShrunkenBoxes : public FaultyBackend {
       for (AxisBox box : query.boxes) {
         const Frustum::Distances distances = Frustum(camera_).distancesOf(box);
         const float by =
-            float(pixels_ * 2 * distances.least / (glm::length(vec3(camera_.down)) * camera_.size.y));
+            float(pixels_ * 2 * distances.least / (double(glm::length(vec3(camera_.down))) * camera_.size.y));
         const vec3 middle = (box.low + box.high) * 0.5f;
         boxes.back().push_back({glm::min(box.low + by, middle), glm::max(box.high - by, middle)});
       }

@@ -98,8 +98,12 @@ TEST(DrawFrustum, WhatLandsInTheImageIsNeverOutside) {
     inside += side == FrustumSide::inside;
     for (int k = 0; k < 10; ++k) {
       const bool in = inImage(camera, pointIn(random, box));
-      if (in) EXPECT_NE(side, FrustumSide::outside);
-      if (!in) EXPECT_NE(side, FrustumSide::inside);
+      if (in) {
+        EXPECT_NE(side, FrustumSide::outside);
+      }
+      if (!in) {
+        EXPECT_NE(side, FrustumSide::inside);
+      }
     }
   }
   EXPECT_GT(outside, 3000);
@@ -296,7 +300,9 @@ TEST(NodeQueue, NearestFirstThenLowestNumber) {
     const uint32_t node = queue.pop();
     const double distance = squaredDistance(camera, tree.nodes[node].box);
     EXPECT_GE(distance, last);
-    if (distance == last && last_node != 0) EXPECT_GT(node, last_node);
+    if (distance == last && last_node != 0) {
+      EXPECT_GT(node, last_node);
+    }
     last = distance;
     last_node = node;
   }

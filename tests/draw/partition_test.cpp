@@ -15,7 +15,9 @@ void checkPartition(const Scene& scene, const Drawables& drawables, uint32_t spl
     EXPECT_GE(d.object, object);
     object = d.object;
     ASSERT_GE(d.triangle_count, 1u);
-    if (split > 0) EXPECT_LE(d.triangle_count, split);
+    if (split > 0) {
+      EXPECT_LE(d.triangle_count, split);
+    }
     AxisBox box{glm::vec3(INFINITY), glm::vec3(-INFINITY)};
     for (uint32_t i = 0; i < d.triangle_count; ++i) {
       const uint32_t id = drawables.triangles[d.first_triangle + i];
@@ -40,8 +42,12 @@ TEST(Partition, HoldsEveryTriangleOnce) {
       SCOPED_TRACE(std::string(name) + " " + std::to_string(split));
       const Drawables parts = partitionScene(scene, {.split = split});
       checkPartition(scene, parts, split);
-      if (split == 1) EXPECT_EQ(parts.list.size(), scene.triangleCount());
-      if (split == 0 && scene.surfaces.empty()) EXPECT_EQ(parts.list.size(), scene.objects.size());
+      if (split == 1) {
+        EXPECT_EQ(parts.list.size(), scene.triangleCount());
+      }
+      if (split == 0 && scene.surfaces.empty()) {
+        EXPECT_EQ(parts.list.size(), scene.objects.size());
+      }
     }
   }
 }

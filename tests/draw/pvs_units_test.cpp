@@ -34,7 +34,7 @@ struct City {
         if (random.pick(40) == 0) ids.push_back(id);
       }
       pvs.cells.push_back(
-          cellOf(glm::dvec3(random.point(20)), glm::dvec3(1) + glm::abs(glm::dvec3(random.point(9))), ids));
+          cellOf(glm::dvec3(random.point(20)), glm::dvec3(5) + glm::abs(glm::dvec3(random.point(25))), ids));
       pvs.cells.back().cell.rotation = glm::dvec3(0, 90 * random.unit(), 0);
     }
   }
@@ -70,8 +70,9 @@ TEST(PvsUnits, AreTheSets) {
         const uint32_t word = city.scene.surfaces.words[list.ids[i]];
         EXPECT_EQ(i >= list.masked_begin && i < list.blended_begin, word == kSurfaceMasked);
         EXPECT_EQ(i >= list.blended_begin, word == kSurfaceGlass);
-        if (i > 0 && i != list.masked_begin && i != list.blended_begin)
+        if (i > 0 && i != list.masked_begin && i != list.blended_begin) {
           EXPECT_LT(list.ids[i - 1], list.ids[i]);
+        }
       }
     }
   }
@@ -115,8 +116,8 @@ TEST(PvsUnits, NearestCellIsNearest) {
                cellOf({10, 0, 0}, {2, 2, 2}, {})};
   pvs.cells[1].cell.rotation = {0, 45, 0};  // its corner is nearer than that of the third
   const PvsUnits units = makePvsUnits(pvs, {});
-  EXPECT_EQ(units.nearestCell({4.9, 0, 0}), 0u);
-  EXPECT_EQ(units.nearestCell({5.1, 0, 0}), 1u);
+  EXPECT_EQ(units.nearestCell({4.7, 0, 0}), 0u);
+  EXPECT_EQ(units.nearestCell({4.9, 0, 0}), 1u);
   EXPECT_EQ(units.nearestCell({10, 3, 0}), 1u);  // as near: the first
   EXPECT_EQ(units.nearestCell({11.2, 0, 1.2}), 2u);
   EXPECT_EQ(PvsUnits{}.nearestCell({0, 0, 0}), std::nullopt);
