@@ -92,9 +92,9 @@ class Curve {
   glm::dvec3 at(size_t i, double share) const {
     const double length = between(i, i + 1), s = share, left = 1 - share;
     const glm::dvec3 from = value(i), to = value(i + 1);
-    // Hermite's cubic.
-    return from * ((1 + 2 * s) * left * left) + slope(i) * (length * (s * left * left)) +
-           to * (s * s * (3 - 2 * s)) - slope(i + 1) * (length * (s * s * left));
+    // Hermite's cubic, so that what rests stays where it is to the last bit.
+    return from + (to - from) * (s * s * (3 - 2 * s)) + slope(i) * (length * (s * left * left)) -
+           slope(i + 1) * (length * (s * s * left));
   }
 
  private:
