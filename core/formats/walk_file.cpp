@@ -44,8 +44,8 @@ CameraPath readWalk(const JsonObject& document) {
   path.fov = document.real("fov").value_or(kDefaultPathFov);
   for (const JsonObject& key : document.objects("keys")) {
     checkWalkKeys(key, {"frame", "eye", "look"});
-    path.keys.push_back({frameNumber(key.requiredNumber("frame")),
-                         {requiredPoint(key, "eye"), requiredPoint(key, "look")}});
+    path.keys.push_back(
+        {frameNumber(key.requiredNumber("frame")), {requiredPoint(key, "eye"), requiredPoint(key, "look")}});
   }
   for (const size_t cut : document.indices("cuts", kMostPathFrames)) path.cuts.push_back(uint32_t(cut));
   return path;
@@ -84,8 +84,8 @@ std::string walkText(const CameraPath& path, const std::string& file) {
   std::string text = fmt::format("{{\"fov\": {}, \"keys\": [\n", json(path.fov).dump());
   for (size_t i = 0; i < path.keys.size(); ++i) {
     const PathKey& key = path.keys[i];
-    text += fmt::format("  {{\"frame\": {}, \"eye\": {}, \"look\": {}}}{}\n", key.frame, pointText(key.at.eye),
-                        pointText(key.at.look), i + 1 < path.keys.size() ? "," : "");
+    text += fmt::format("  {{\"frame\": {}, \"eye\": {}, \"look\": {}}}{}\n", key.frame,
+                        pointText(key.at.eye), pointText(key.at.look), i + 1 < path.keys.size() ? "," : "");
   }
   return text + fmt::format("], \"cuts\": [{}]}}\n", fmt::join(path.cuts, ", "));
 }

@@ -95,7 +95,8 @@ std::vector<ViewCell> generateRepeatedCells(const std::string& name, uint64_t tr
 CameraPath generateWalk(const std::string& name, uint64_t triangles, uint64_t seed, uint32_t frames,
                         uint32_t kinds) {
   if (kinds > 0) checkRepeated(name, triangles, kinds);
-  const Generator& generator = find(name, triangles, kinds > 0 ? kMaxRepeatedTriangles : kMaxGeneratedTriangles);
+  const Generator& generator =
+      find(name, triangles, kinds > 0 ? kMaxRepeatedTriangles : kMaxGeneratedTriangles);
   if (frames < kMinWalkFrames || frames > kMostPathFrames) {
     throw Error("number of frames " + std::to_string(frames) + " is out of range " +
                     std::to_string(kMinWalkFrames) + ".." + std::to_string(kMostPathFrames),

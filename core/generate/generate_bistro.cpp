@@ -13,8 +13,8 @@
 #include "core/generate/building.h"
 #include "core/generate/generator_random.h"
 #include "core/generate/scene_generators.h"
-#include "core/generate/walk_plan.h"
 #include "core/generate/street_props.h"
+#include "core/generate/walk_plan.h"
 
 namespace sightline {
 namespace {

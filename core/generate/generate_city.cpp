@@ -13,8 +13,8 @@
 #include "core/generate/building.h"
 #include "core/generate/generator_random.h"
 #include "core/generate/scene_generators.h"
-#include "core/generate/walk_plan.h"
 #include "core/generate/street_props.h"
+#include "core/generate/walk_plan.h"
 
 namespace sightline {
 namespace {
@@ -305,7 +305,8 @@ CameraPath cityWalk(uint64_t triangles, uint64_t seed, uint32_t frames, bool eve
   plan.key(0.78, {x, kAboveRoofs / 2, z}, {x, kAboveRoofs / 4, z - 40});
   plan.key(0.84, {x, kAboveRoofs, z}, {x, kAboveRoofs / 2, z - 60});
   plan.key(0.86, {x, kAboveRoofs * 1.2, z}, {x, kAboveRoofs / 2, z - 60});
-  plan.seeAll({(city.x.start() + city.x.end()) / 2, 0, (city.z.start() + city.z.end()) / 2}, extent, {0, 0, 1});
+  plan.seeAll({(city.x.start() + city.x.end()) / 2, 0, (city.z.start() + city.z.end()) / 2}, extent,
+              {0, 0, 1});
   return plan.path();
 }
 

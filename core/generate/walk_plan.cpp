@@ -7,9 +7,9 @@
 namespace sightline {
 namespace {
 
-constexpr double kLookAhead = 10;       // metres
-constexpr double kDegreesOfAKey = 45;   // looks turn by at most so much from key to key
-constexpr double kOutOfAll = 1.06;      // extents up and back: a ball of half its diagonal fits in 60 degrees
+constexpr double kLookAhead = 10;      // metres
+constexpr double kDegreesOfAKey = 45;  // looks turn by at most so much from key to key
+constexpr double kOutOfAll = 1.06;     // extents up and back: a ball of half its diagonal fits in 60 degrees
 
 }  // namespace
 

@@ -30,12 +30,11 @@ Problem frameProblem(const std::vector<PathKey>& keys, size_t i) {
     return PathProblem{place, fmt::format("is {}; the first key is at frame 0", frame)};
   }
   if (i > 0 && frame <= keys[i - 1].frame) {
-    return PathProblem{place, fmt::format("{} is not above {}, the frame of the key before it", frame,
-                                          keys[i - 1].frame)};
+    return PathProblem{
+        place, fmt::format("{} is not above {}, the frame of the key before it", frame, keys[i - 1].frame)};
   }
   if (frame >= kMostPathFrames) {
-    return PathProblem{place,
-                       fmt::format("{} makes a path of more than {} frames", frame, kMostPathFrames)};
+    return PathProblem{place, fmt::format("{} makes a path of more than {} frames", frame, kMostPathFrames)};
   }
   return {};
 }
@@ -86,7 +85,7 @@ bool isCut(const CameraPath& path, uint32_t frame) {
 /// What the curve of one of a key's two points needs of a stretch of keys.
 class Curve {
  public:
-  Curve(const CameraPath& path, glm::dvec3 PathPlace::* point) : path_(path), point_(point) {}
+  Curve(const CameraPath& path, glm::dvec3 PathPlace::*point) : path_(path), point_(point) {}
 
   /// Between key i and the next, at a share of the way.
   glm::dvec3 at(size_t i, double share) const {
@@ -111,7 +110,7 @@ class Curve {
   }
 
   const CameraPath& path_;
-  glm::dvec3 PathPlace::* point_;
+  glm::dvec3 PathPlace::*point_;
 };
 
 }  // namespace

@@ -68,8 +68,8 @@ bool startsStretch(const CameraPath& path, uint32_t frame);
 /// The path, moved by as much: from a file's coordinates to those of a scene with an offset, or back.
 CameraPath moved(CameraPath path, const glm::dvec3& by);
 
-/// A path of straight lines through points, at an even speed, looking ahead. It turns at the points, within a
-/// sixteenth of each line, where the curve leaves the lines by less than a tenth of that.
+/// A path of straight lines through points, at an even speed, looking ahead. It turns at the points, within
+/// an eighth of each line, where the curve leaves the lines by less than a tenth of that.
 struct PathThrough {
   std::vector<glm::dvec3> points;  ///< two or more; those in a row that are the same count once
   uint32_t frames = 0;             ///< at least one a point, at most kMostPathFrames

@@ -47,7 +47,8 @@ Way wayThrough(const std::vector<glm::dvec3>& points) {
   return way;
 }
 
-/// The camera turns within this share of a line before and behind a point: the curve there is no line.
+/// The camera turns within this share of a line before and behind a point, twice as far off begins to: two
+/// keys that look the same way keep all between them straight.
 constexpr double kTurnShare = 1.0 / 16;
 
 double lengthOf(const glm::dvec3& v) {
@@ -82,7 +83,7 @@ std::vector<Stop> stopsOf(const Way& way, size_t first, size_t last) {
     add(way.lengths[i], way.points[i],
         before == after ? way.direction(before) : lookBetween(way.direction(before), way.direction(after)),
         true);
-    for (const double share : {kTurnShare, 1 - kTurnShare}) {
+    for (const double share : {kTurnShare, 2 * kTurnShare, 1 - 2 * kTurnShare, 1 - kTurnShare}) {
       if (i == last) continue;
       add(std::lerp(way.lengths[i], way.lengths[i + 1], share),
           way.points[i] + share * (way.points[i + 1] - way.points[i]), way.direction(i), false);
@@ -99,7 +100,8 @@ void addStretch(const Way& way, size_t first, size_t last, uint32_t from, uint32
   }
   const double length = way.lengths[last] - way.lengths[first];
   const auto frameAt = [&](double at) {
-    return from + (length == 0 ? 0 : uint32_t(std::floor((at - way.lengths[first]) / length * (to - from) + 0.5)));
+    return from +
+           (length == 0 ? 0 : uint32_t(std::floor((at - way.lengths[first]) / length * (to - from) + 0.5)));
   };
   const std::vector<Stop> stops = stopsOf(way, first, last);
   std::vector<uint32_t> point_frames;

@@ -94,12 +94,12 @@ struct WalkCells {
   uint64_t inset = 0;                     ///< cells that are smaller, for the margin
 };
 
-/// Few boxes that hold the eye of every frame of a walk but those left out: each along the line from its first
-/// frame to its last, x level, no longer, wider and higher than options say, and its sides `margin` away from
-/// triangles (0: wherever they are). Eyes keep a quarter of the width and height from the sides of a box before
-/// these come in. Boxes in a row share a frame, so that they meet; none reaches over a cut. Named walk-1,
-/// walk-2, ... The path has the scene's coordinates (Scene::offset). bvh is of this scene. Throws Error (exit
-/// code 2) for sizes that are not positive and finite, and a margin too large for them.
+/// Few boxes that hold the eye of every frame of a walk but those left out: each along the line from its
+/// first frame to its last, x level, no longer, wider and higher than options say, and its sides `margin`
+/// away from triangles (0: wherever they are). Eyes keep a quarter of the width and height from the sides of
+/// a box before these come in. Boxes in a row share a frame, so that they meet; none reaches over a cut.
+/// Named walk-1, walk-2, ... The path has the scene's coordinates (Scene::offset). bvh is of this scene.
+/// Throws Error (exit code 2) for sizes that are not positive and finite, and a margin too large for them.
 WalkCells walkCells(const Scene& scene, const Bvh& bvh, const CameraPath& path, const PathOptions& options,
                     double margin);
 

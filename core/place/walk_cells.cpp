@@ -79,7 +79,9 @@ class WalkBoxes {
     glm::dvec3 d = placeAt(path_, last).eye - from.eye;
     if (d == glm::dvec3(0)) d = {from.look.x - from.eye.x, 0, from.look.z - from.eye.z};
     const double level = distanceOf({d.x, 0, d.z});
-    return {"", from.eye, {options_.width, options_.height, 0},
+    return {"",
+            from.eye,
+            {options_.width, options_.height, 0},
             {0.0 - atan2Degrees(d.y, level), atan2Degrees(d.x, d.z), 0}};
   }
 

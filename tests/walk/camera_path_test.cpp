@@ -1,10 +1,11 @@
+#include "core/path/camera_path.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "core/base/error.h"
 #include "core/formats/walk_file.h"
-#include "core/path/camera_path.h"
 
 namespace sightline {
 namespace {
@@ -94,8 +95,7 @@ TEST(CameraPath, NamesWhatIsWrong) {
   EXPECT_EQ(with([](CameraPath& p) { p.keys[3].frame = 1'000'000; }),
             "keys[3].frame: 1000000 makes a path of more than 1000000 frames");
   EXPECT_EQ(with([](CameraPath& p) { p.keys[3].frame = 999'999; }), "");
-  EXPECT_EQ(with([](CameraPath& p) { p.keys[1].at.eye.y = NAN; }),
-            "keys[1].eye[1]: is not a finite number");
+  EXPECT_EQ(with([](CameraPath& p) { p.keys[1].at.eye.y = NAN; }), "keys[1].eye[1]: is not a finite number");
   EXPECT_EQ(with([](CameraPath& p) { p.keys[1].at.look.z = 1e300; }),
             "keys[1].look[2]: 1e+300 is farther than 2^40 from the origin");
   EXPECT_EQ(with([](CameraPath& p) { p.keys[2].at.look = p.keys[2].at.eye; }),
@@ -126,10 +126,10 @@ TEST(PathThrough, GoesAlongLinesAtAnEvenSpeed) {
     // The middle of a line: straight ahead, at 200 metres in 2000 frames.
     const double way = frame * 0.1;
     if (way < 93 || (way > 104 && way < 146) || (way > 154)) {
-      EXPECT_NEAR(step, 0.1, 3e-3) << frame;
+      EXPECT_NEAR(step, 0.1, 5e-3) << frame;
     }
-    if (way > 7 && way < 93) {
-      EXPECT_LT(glm::length(a.look - a.eye - glm::dvec3(1, 0, 0)), 0.05) << frame;
+    if (way > 12.6 && way < 87) {
+      EXPECT_LT(glm::length(a.look - a.eye - glm::dvec3(1, 0, 0)), 1e-9) << frame;
     }
     EXPECT_GT(glm::length(a.look - a.eye), 0.3) << frame;
     // Near one of the lines.
@@ -182,8 +182,8 @@ TEST(WalkFile, ReadsBackWhatItWrites) {
   path.fov = 77.25;
   path.keys[1].at.eye = {0.1, -1e-300, 123456.789012345};
   EXPECT_EQ(parseWalk(walkText(path, "w.json"), "w.json"), path);
-  const CameraPath plain = parseWalk(
-      R"({"keys":[{"frame":0,"eye":[0,1,2],"look":[3,4,5],"x-note":1}],"x-by":"hand"})", "w.json");
+  const CameraPath plain =
+      parseWalk(R"({"keys":[{"frame":0,"eye":[0,1,2],"look":[3,4,5],"x-note":1}],"x-by":"hand"})", "w.json");
   EXPECT_EQ(plain.fov, 60);
   EXPECT_EQ(plain.keys, (Keys{{0, {{0, 1, 2}, {3, 4, 5}}}}));
 }
@@ -209,8 +209,9 @@ TEST(WalkFile, NamesFileAndPlaceOfWhatIsWrong) {
             "w.json: keys[0].frame: expected a whole number of at least 0");
   EXPECT_EQ(readError(R"({"keys":[{"frame":0,"eye":[0,0],"look":[1,0,0]}]})"),
             "w.json: keys[0].eye: expected 3 numbers");
-  EXPECT_EQ(readError(R"({"kyes":[]})"),
-            R"(w.json: unknown key "kyes", expected one of fov, keys, cuts, or x-... for keys of other programs)");
+  EXPECT_EQ(
+      readError(R"({"kyes":[]})"),
+      R"(w.json: unknown key "kyes", expected one of fov, keys, cuts, or x-... for keys of other programs)");
   EXPECT_NE(readError(R"({"keys":[{"frame":0,"eye":[NaN,0,0],"look":[1,0,0]}]})").find("w.json:1:"),
             std::string::npos);
   EXPECT_EQ(readError(R"({"keys":[{"frame":0,"eye":[1,0,0],"look":[1,0,0]}]})"),

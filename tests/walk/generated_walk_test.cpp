@@ -41,7 +41,8 @@ class GeneratedWalk : public testing::TestWithParam<WalkCase> {};
 
 TEST_P(GeneratedWalk, GoesThroughFreeSpace) {
   const auto& [name, n, seed, kinds] = GetParam();
-  const Scene scene = kinds > 0 ? flatten(generateRepeated(name, n, seed, kinds)) : generateScene(name, n, seed);
+  const Scene scene =
+      kinds > 0 ? flatten(generateRepeated(name, n, seed, kinds)) : generateScene(name, n, seed);
   const Bvh bvh = buildSceneTree(scene);
   const CpuTracer tracer(scene, bvh);
   const CameraPath path = generateWalk(name, n, seed, 1500, kinds);
@@ -67,7 +68,8 @@ TEST_P(GeneratedWalk, GoesThroughFreeSpace) {
 
 TEST_P(GeneratedWalk, HasAFastTurnCutsAndARiseOverAll) {
   const auto& [name, n, seed, kinds] = GetParam();
-  const Scene scene = kinds > 0 ? flatten(generateRepeated(name, n, seed, kinds)) : generateScene(name, n, seed);
+  const Scene scene =
+      kinds > 0 ? flatten(generateRepeated(name, n, seed, kinds)) : generateScene(name, n, seed);
   const CameraPath path = generateWalk(name, n, seed, 1500, kinds);
   EXPECT_EQ(path.cuts, (std::vector<uint32_t>{uint32_t(std::floor(kSideFrom * 1499 + 0.5)),
                                               uint32_t(std::floor(kRiseFrom * 1499 + 0.5))}));

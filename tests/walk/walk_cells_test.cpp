@@ -33,14 +33,15 @@ TEST_P(WalkCellsOf, HoldEveryFrameAndNoTriangle) {
     EXPECT_GT(holders(walk.cells, placeAt(path, frame).eye), 0u) << "frame " << frame;
     if (frame > 0 && !startsStretch(path, frame)) {
       const glm::dvec3 a = placeAt(path, frame - 1).eye, b = placeAt(path, frame).eye;
-      EXPECT_TRUE(std::ranges::any_of(walk.cells, [&](const ViewCell& cell) {
-        return cellContains(cell, a) && cellContains(cell, b);
-      })) << "between frames " << frame - 1 << " and " << frame;
+      EXPECT_TRUE(std::ranges::any_of(
+          walk.cells, [&](const ViewCell& cell) { return cellContains(cell, a) && cellContains(cell, b); }))
+          << "between frames " << frame - 1 << " and " << frame;
     }
   }
   double length = 0;
   for (uint32_t frame = 1; frame < path.frames(); ++frame) {
-    if (!startsStretch(path, frame)) length += glm::length(placeAt(path, frame).eye - placeAt(path, frame - 1).eye);
+    if (!startsStretch(path, frame))
+      length += glm::length(placeAt(path, frame).eye - placeAt(path, frame - 1).eye);
   }
   EXPECT_LT(double(walk.cells.size()), 20 + 3 * length / options.length) << "few";
   for (const ViewCell& cell : walk.cells) {
@@ -83,10 +84,12 @@ TEST(WalkCells, ComeInForAWallAndLeaveOutWhatIsTooNear) {
 }
 
 TEST(WalkCells, DoNotReachOverACut) {
-  const CameraPath path{.keys = {{0, {{0, 0, 0}, {1, 0, 0}}}, {5, {{1, 0, 0}, {2, 0, 0}}}, {6, {{8, 0, 0}, {9, 0, 0}}}},
-                        .cuts = {6}};
+  const CameraPath path{
+      .keys = {{0, {{0, 0, 0}, {1, 0, 0}}}, {5, {{1, 0, 0}, {2, 0, 0}}}, {6, {{8, 0, 0}, {9, 0, 0}}}},
+      .cuts = {6}};
   const Scene scene = wallAt(100);
-  const WalkCells walk = walkCells(scene, buildSceneTree(scene), path, {.width = 2, .height = 2, .length = 50}, 0);
+  const WalkCells walk =
+      walkCells(scene, buildSceneTree(scene), path, {.width = 2, .height = 2, .length = 50}, 0);
   ASSERT_EQ(walk.cells.size(), 2u);
   EXPECT_EQ(holders(walk.cells, {4, 0, 0}), 0u);
 }
