@@ -80,12 +80,13 @@ constexpr const char* kPathFooter =
     "ahead and turns near them; the scene is searched for what it would go through.\n"
     "At a cut it jumps: the line between two points on which it would be is left out.\n"
     "A file of points has x,y,z on each line; # starts a comment.\n\n"
-    "walk replays the file, cells --walk places view cells along it. It may be edited:\n"
+    "walk replays the file, cells --walk places view cells along it. To edit it:\n"
     "  {\"fov\":60,\"keys\":[{\"frame\":0,\"eye\":[x,y,z],\"look\":[x,y,z]},...],\"cuts\":[...]}\n\n"
     "Examples:\n"
     "  sightline path city.glb -o walk.json --frames 3000 \\\n"
     "      --through 0,1.7,-200 0,1.7,200 120,1.7,200\n"
-    "  sightline path city.glb -o walk.json --frames 600 --through points.txt --cut 300\n";
+    "  sightline path city.glb -o walk.json --frames 600 --through points.txt \\\n"
+    "      --cut 300\n";
 
 }  // namespace
 

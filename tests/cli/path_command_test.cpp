@@ -37,7 +37,7 @@ TEST(PathCommand, GoesThroughPointsAndNamesWhatIsInTheWay) {
         {"warning: the eye goes through surfaces 2 times, first after frame", "w.json: 41 frames, 0 cuts"});
     const CameraPath path = loadWalk(where + "w.json");
     EXPECT_EQ(path.frames(), 41u);
-    EXPECT_EQ(placeAt(path, 20).eye, glm::dvec3(x, 0, 0));
+    EXPECT_LT(glm::length(placeAt(path, 20).eye - glm::dvec3(x, 0, 0)), 0.25);  // half a frame
   }
   const auto scene = folder.write("walls.obj", twoWalls(0));
   expectRun("path " + scene.string() + " -o " + where + "w.json --frames 41 --through 0,0,-10 0,0,10", 1,
