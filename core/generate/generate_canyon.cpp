@@ -59,7 +59,8 @@ void addRock(std::vector<ScenePart>& parts, const Terrain& terrain, uint32_t ind
   float t;
   uint32_t tries = 0;
   do {
-    at = mapPoint(*terrain, random.uniform(-0.95f, 0.95f), random.uniform(-0.9f, 0.9f));
+    const float across = random.uniform(-0.9f, 0.9f), along = random.uniform(-0.95f, 0.95f);
+    at = mapPoint(*terrain, along, across);
     t = terrain->steepness(at);
   } while (t < kCanyonFreeLane + 0.04f && ++tries < 100);
   if (tries == 100) at = mapPoint(*terrain, random.uniform(-0.95f, 0.95f), 0.8f);

@@ -168,8 +168,8 @@ void addStreetSide(std::vector<ScenePart>& parts, const Frame& kerb, float lengt
       add("bin", pavement, makeBin);
     }
     if (random.chance(0.6f)) {
-      add("car", kerb.at({1.25f, 0, at + random.uniform(-0.4f, 0.4f)}, random.chance(0.5f) ? 0.0f : 0.5f),
-          makeCar);
+      const float turned = random.chance(0.5f) ? 0.0f : 0.5f;
+      add("car", kerb.at({1.25f, 0, at + random.uniform(-0.4f, 0.4f)}, turned), makeCar);
     }
   }
 }

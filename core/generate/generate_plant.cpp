@@ -132,7 +132,8 @@ PipeBox PlantBuilder::addMachines(const Frame& bay, const std::string& name, Gen
       return {{2.7f, 0, 4.5f - radius}, {11.3f, 2 * radius + 0.9f, 9.5f + radius}};
     }
     case 2: {
-      const glm::vec3 size(9, random.uniform(2.4f, 4), random.uniform(2, 4));
+      const float deep = random.uniform(2, 4), high = random.uniform(2.4f, 4);
+      const glm::vec3 size(9, high, deep);
       add("exchanger-" + name, bay.at({2.5f, 0, 7 - size.z / 2}),
           [=](MeshBuilder& mesh, uint32_t level) { makeTubeBank(mesh, size, level); });
       return {{2.5f, 0, 7 - size.z / 2}, {11.5f, size.y, 7 + size.z / 2}};
