@@ -6,12 +6,13 @@
 #include "vk_shaders/compare_launch.h"
 
 layout(local_size_x = 256) in;
+const uint kRowGroups = 32768u;  // of the grid
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer CompareAt {
   CompareLaunch launch;
 };
 
 void main() {
-  uint pixel = gl_GlobalInvocationID.x;
+  uint pixel = (gl_WorkGroupID.y * kRowGroups + gl_WorkGroupID.x) * 256u + gl_LocalInvocationIndex;
   if (pixel >= push.numbers.x) return;
   CompareLaunch compare = CompareAt(push.launch).launch;
   uint id = Words(compare.ids).at[pixel];

@@ -64,5 +64,5 @@ void main() {
     if ((state & kUnitNext) != 0u) atomicAdd(next_of_block, 1u);
   }
   barrier();
-  if (gl_LocalInvocationIndex == 0u) Words(SL_CULL.block_counts).at[gl_WorkGroupID.x] = next_of_block;
+  if (gl_LocalInvocationIndex == 0u) Words(SL_CULL.block_counts).at[push.numbers.z * SL_CULL.blocks + gl_WorkGroupID.x] = next_of_block;
 }

@@ -50,7 +50,7 @@ SL_CONST uint kMeshletRow = 32768u;
 SL_STRUCT(CullLaunch) {
   uint64 units;         ///< CullUnit[]
   uint64 states;        ///< uint[] a unit: kUnit...
-  uint64 block_counts;  ///< uint[] a block of units
+  uint64 block_counts;  ///< uint[blocks] a list: of its units that are next, by block
   uint64 draws;         ///< uint[kDrawWords] a draw; of one list those of its first unit on
   uint64 listed;        ///< uint[]: numbers of the units in a list of meshlets
   uint64 heads;         ///< uint[kHeadWords] a list
@@ -58,8 +58,8 @@ SL_STRUCT(CullLaunch) {
   uint64 candidates;    ///< uint[]: a bit a drawable: whether it may be drawn; 0: all may
   uint64 meshlets;      ///< uint[]: of each meshlet how many vertices it has, their numbers, a word of corners a triangle
   uint64 order;         ///< uint[]: blended units, the farthest first
+  uint blocks;          ///< of all units
   float shrink;         ///< of guardBox, and pixels that the pyramid's test takes off: 0 but for tests of tests
-  uint floors;          ///< 1: levels of the pyramid drop odd columns and rows: likewise
 };
 
 /// Numbers of a dispatch over units.

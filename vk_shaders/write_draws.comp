@@ -59,7 +59,7 @@ void main() {
 
   uint before = 0u;
   for (uint block = gl_LocalInvocationIndex; block < gl_WorkGroupID.x; block += kCullBlock) {
-    before += Words(SL_CULL.block_counts).at[block];
+    before += Words(SL_CULL.block_counts).at[push.numbers.z * SL_CULL.blocks + block];
   }
   uint first = sumOfGroup(before);
   uint place = first + sumBefore(next ? 1u : 0u);
@@ -69,7 +69,9 @@ void main() {
   uint triangles = sumOfGroup(next ? Units(SL_CULL.units).at[unit].run.y : 0u);
   uint count = sumOfGroup(next ? 1u : 0u);
   if (gl_LocalInvocationIndex == 0u && triangles > 0u) atomicAdd(head.at[kHeadTriangles], triangles);
-  if (gl_LocalInvocationIndex == 0u && gl_WorkGroupID.x + 1u == gl_NumWorkGroups.x) {
+  // Blocks are counted in the order of units, not in the given one; there nothing needs the head but statistics.
+  if (ordered && gl_LocalInvocationIndex == 0u) atomicAdd(head.at[0], count);
+  if (!ordered && gl_LocalInvocationIndex == 0u && gl_WorkGroupID.x + 1u == gl_NumWorkGroups.x) {
     uint all = first + count;
     head.at[0] = all;
     head.at[1] = min(all, kMeshletRow);

@@ -74,6 +74,8 @@ namespace sightline {
   X(vkCmdBeginRenderPass)             \
   X(vkCmdEndRenderPass)               \
   X(vkCmdNextSubpass)                 \
+  X(vkCmdSetViewport)                 \
+  X(vkCmdSetScissor)                  \
   X(vkCmdDraw)                        \
   X(vkCmdDrawIndexed)                 \
   X(vkCmdDrawIndirect)                \
