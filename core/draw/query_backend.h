@@ -34,7 +34,8 @@ class QueryBackend {
   /// others' follow.
   virtual QueryId submit(std::span<const uint32_t> draws, std::span<const OcclusionQuery> queries) = 0;
 
-  /// Draws all triangles of a cell's list by one draw (core/draw/triangle_lists.h), in a submit of its own.
+  /// Draws the triangles of a list (core/draw/triangle_lists.h), those that the backend was made with, in its
+  /// order and by a draw a kind, in a submit of its own.
   virtual void submitList(uint32_t list) = 0;
 
   /// Whether the answer can be had without waiting. Queries of a submit arrive in their order. Never waits.
