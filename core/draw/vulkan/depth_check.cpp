@@ -16,11 +16,11 @@ void DepthCheck::fit() {
   const DrawTarget& drawn = drawing_.target();
   if (target_.width() == drawn.width() && target_.height() == drawn.height()) return;
   target_ = DrawTarget();
-  reference_ = tested_ = ids_ = VulkanBuffer();
+  for (VulkanBuffer* buffer : {&reference_, &tested_, &ids_}) *buffer = VulkanBuffer();
   target_ = DrawTarget(context, drawing_.passes(), drawn.width(), drawn.height());
   const VulkanMemoryUse use("images to compare", "a smaller resolution, or leave the check out");
   for (VulkanBuffer* buffer : {&reference_, &tested_, &ids_}) *buffer = context.buffer(4 * drawn.pixels(), use);
-  const uint64_t counts = 4 * (kDrawableCounts + 2 * drawing_.scene().drawables().list.size());
+  const uint64_t counts = 4 * (kDrawableCounts + 2 * drawing_.mesh().drawables().list.size());
   if (counts_.bytes() > 0) return;
   counts_ = context.buffer(counts, use);
   results_ = context.buffer(counts, use, VulkanMemory::kReadback);
@@ -31,8 +31,8 @@ void DepthCheck::drawReference(VkCommandBuffer commands, GpuCulling* method) {
   target_.begin(drawing_.context(), commands, drawing_.passes(), true);
   std::optional<AlphaKind> bound;
   const auto drawKind = [&](AlphaKind kind) {
-    for (uint32_t i = 0; i < drawing_.scene().drawables().list.size(); ++i) {
-      const SlotRun run = drawing_.scene().run(i);
+    for (uint32_t i = 0; i < drawing_.mesh().drawables().list.size(); ++i) {
+      const SlotRun run = drawing_.mesh().run(i);
       if (run.kind == kind) drawing_.draw(commands, run, i, bound);
     }
   };
@@ -58,7 +58,7 @@ DepthDifference DepthCheck::compare(GpuCulling* method) {
   target_.copy(context, commands.next(), DrawTarget::Image::ids, ids_);
   drawing_.target().copy(context, commands.next(), DrawTarget::Image::depth, tested_);
   const auto pixels = uint32_t(target_.pixels());
-  const auto drawables = uint32_t(drawing_.scene().drawables().list.size());
+  const auto drawables = uint32_t(drawing_.mesh().drawables().list.size());
   const DrawPush push{launch_.address(), 0, {pixels, drawables, 0, 0}};
   const uint32_t groups = (pixels + kCompareGroup - 1) / kCompareGroup;
   drawing_.programs().run(commands.next(), "compare_depth.comp", push, std::min(groups, 32768u),

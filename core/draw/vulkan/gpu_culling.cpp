@@ -45,9 +45,9 @@ GpuCulling::GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullin
                             why));
   };
   if (const std::string why = whyNotMethod(context.abilities(), method); !why.empty()) refuse(why);
-  const Drawables& drawables = drawing.scene().drawables();
+  const Drawables& drawables = drawing.mesh().drawables();
   const bool meshlets = method == GpuMethod::hizMeshlets;
-  units_ = meshlets ? meshletUnits(drawing.scene().scene(), drawables) : drawableUnits(drawables);
+  units_ = meshlets ? meshletUnits(drawing.mesh().scene(), drawables) : drawableUnits(drawables);
   meshes_ = meshlets && options.mesh_shaders && context.has(VulkanFeature::kMeshShaders);
   if (unitCount() > context.limits().draws || blocksOf(unitCount()) > context.limits().launch_groups) {
     refuse(fmt::format("{} draws are more than the {} of one list; give a larger --split", unitCount(),
@@ -67,7 +67,7 @@ void GpuCulling::createBuffers() {
   block_counts_ = make(uint64_t(blocksOf(uint32_t(units))) * kLists * 4, "counts of what is drawn");
   draws_ = make(units * kDrawWords * 4, "lists of draws");
   heads_ = make(kHeadBytes, "lists of draws");
-  candidates_ = make((drawing_.scene().drawables().list.size() / 32 + 1) * 4, "candidates");
+  candidates_ = make((drawing_.mesh().drawables().list.size() / 32 + 1) * 4, "candidates");
   const Range blended = range(AlphaKind::blended);
   order_ = make(std::max<uint64_t>(blended.count, 1) * 4, "order of glass");
   VulkanUpload upload(context);
@@ -140,7 +140,7 @@ void GpuCulling::prepare(VkCommandBuffer commands, std::span<const uint32_t> can
   if (forget_) context.api().vkCmdFillBuffer(commands, states_.get(), 0, VK_WHOLE_SIZE, 0);
   forget_ = false;
   if (restricted && (changed || !restricted_)) {
-    std::vector<uint32_t> bits(drawing_.scene().drawables().list.size() / 32 + 1);
+    std::vector<uint32_t> bits(drawing_.mesh().drawables().list.size() / 32 + 1);
     for (const uint32_t drawable : candidates) bits[drawable / 32] |= 1u << drawable % 32;
     updateBuffer(context, commands, candidates_, bits.data(), bits.size() * 4);
   }
@@ -159,9 +159,9 @@ void GpuCulling::orderBlended(VkCommandBuffer commands) {
   for (uint32_t i = 0; i < blended.count; ++i) {
     const CullUnit& unit = units_.units[blended.first + i];
     const glm::dvec3 centre = (glm::dvec3(unit.low) + glm::dvec3(unit.high)) * 0.5 - eye;
-    distances[i] = {-(centre.x * forward.x + centre.y * forward.y + centre.z * forward.z), blended.first + i};
+    distances[i] = {centre.x * forward.x + centre.y * forward.y + centre.z * forward.z, blended.first + i};
   }
-  std::sort(distances.begin(), distances.end());
+  std::sort(distances.rbegin(), distances.rend());
   std::vector<uint32_t> order;
   for (const auto& [distance, unit] : distances) order.push_back(unit);
   updateBuffer(drawing_.context(), commands, order_, order.data(), order.size() * 4);
@@ -191,7 +191,7 @@ void GpuCulling::drawOpaque(VkCommandBuffer commands, uint32_t list) {
     return;
   }
   drawing_.programs().bind(commands, DrawKind::opaque, drawing_.push());
-  const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.scene().indices();
+  const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.mesh().indices();
   api.vkCmdBindIndexBuffer(commands, indices.get(), 0, VK_INDEX_TYPE_UINT32);
   api.vkCmdDrawIndexedIndirectCount(commands, draws_.get(), 0, heads_.get(), head, opaque.count, kDrawWords * 4);
 }
@@ -201,7 +201,7 @@ void GpuCulling::drawAll(VkCommandBuffer commands) {
   if (opaque.count == 0) return;
   if (meshes_) return drawOpaque(commands, kAll);
   drawing_.programs().bind(commands, DrawKind::opaque, drawing_.push());
-  const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.scene().indices();
+  const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.mesh().indices();
   const VulkanApi& api = drawing_.context().api();
   api.vkCmdBindIndexBuffer(commands, indices.get(), 0, VK_INDEX_TYPE_UINT32);
   for (uint32_t i = opaque.first; i < opaque.first + opaque.count; ++i) {

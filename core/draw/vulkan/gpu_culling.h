@@ -26,7 +26,7 @@ struct GpuCullingOptions {
 /// Haar and S. Aaltonen, GPU-Driven Rendering Pipelines, SIGGRAPH 2015. Where we differ: the pyramid is exact at all sizes
 /// (core/shared/pyramid.h), and boxes are guarded against the device's roundings (core/shared/box_extent.h), so that no
 /// pixel differs from the picture of all drawables. Blended ones are drawn last, sorted on the processor by the distance of
-/// their boxes' centres along the view, then by their numbers.
+/// their boxes' centres along the view, of equally far ones that with the higher number first (FrameRecorder).
 class GpuCulling {
  public:
   /// The drawing must live as long. Throws Error that names what the device lacks, or what does not fit.

@@ -15,12 +15,12 @@ constexpr VkPipelineStageFlags kShaders =
 VulkanDrawing::VulkanDrawing(const std::string& selector, const Scene& scene, const Drawables& drawables,
                              const TriangleLists& lists, const DrawingOptions& options)
     : context_(selector, drawingNeeds(), options.memory_budget),
-      scene_(context_, scene, drawables, lists),
-      passes_(context_, scene_.hasGlass()),
+      mesh_(context_, scene, drawables, lists),
+      passes_(context_, mesh_.hasGlass()),
       programs_(context_, passes_),
       launch_buffer_(context_.buffer(sizeof(DrawLaunch), "a frame's launch")),
       ring_(context_, options.clock) {
-  scene_.describe(launch_);
+  mesh_.describe(launch_);
 }
 
 void VulkanDrawing::beginFrame(const Camera& camera) {
@@ -82,7 +82,7 @@ void VulkanDrawing::draw(VkCommandBuffer commands, const SlotRun& run, uint32_t 
                                                    : DrawKind::glass,
                    push());
     if (run.kind == AlphaKind::opaque) {
-      context_.api().vkCmdBindIndexBuffer(commands, scene_.indices().get(), 0, VK_INDEX_TYPE_UINT32);
+      context_.api().vkCmdBindIndexBuffer(commands, mesh_.indices().get(), 0, VK_INDEX_TYPE_UINT32);
     }
   }
   if (run.kind == AlphaKind::opaque) {

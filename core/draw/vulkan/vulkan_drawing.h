@@ -1,7 +1,7 @@
 #pragma once
 #include "core/draw/vulkan/command_ring.h"
 #include "core/draw/vulkan/draw_programs.h"
-#include "core/draw/vulkan/draw_scene.h"
+#include "core/draw/vulkan/draw_mesh.h"
 
 namespace sightline {
 
@@ -23,7 +23,7 @@ class VulkanDrawing {
   VulkanDrawing& operator=(const VulkanDrawing&) = delete;
 
   const VulkanContext& context() const { return context_; }
-  const DrawScene& scene() const { return scene_; }
+  const DrawMesh& mesh() const { return mesh_; }
   const Camera& camera() const { return launch_.camera; }
   const DrawPasses& passes() const { return passes_; }
   const DrawTarget& target() const { return target_; }
@@ -60,7 +60,7 @@ class VulkanDrawing {
 
  private:
   VulkanContext context_;
-  DrawScene scene_;
+  DrawMesh mesh_;
   DrawPasses passes_;
   DrawPrograms programs_;
   DrawTarget target_;

@@ -23,7 +23,7 @@ QueryId VulkanQueryBackend::submit(std::span<const uint32_t> draws, std::span<co
   drawing_.beginPass(entry);
   std::optional<AlphaKind> bound;
   for (const uint32_t drawable : draws) {
-    drawing_.draw(entry.commands, drawing_.scene().run(drawable), drawable, bound);
+    drawing_.draw(entry.commands, drawing_.mesh().run(drawable), drawable, bound);
   }
   if (!draws.empty()) drawing_.ring().mark(entry, GpuPart::draw);
   if (!queries.empty()) {
@@ -55,7 +55,7 @@ void VulkanQueryBackend::submitList(uint32_t list) {
   CommandRing::Entry& entry = drawing_.open();
   drawing_.beginPass(entry);
   std::optional<AlphaKind> bound;
-  for (const SlotRun& run : drawing_.scene().listRuns(list)) {
+  for (const SlotRun& run : drawing_.mesh().listRuns(list)) {
     drawing_.draw(entry.commands, run, kSomeDrawable, bound);
   }
   drawing_.endPass(entry);

@@ -1,4 +1,4 @@
-#include "core/draw/vulkan/draw_scene.h"
+#include "core/draw/vulkan/draw_mesh.h"
 
 #include <fmt/format.h>
 
@@ -9,20 +9,22 @@
 namespace sightline {
 namespace {
 
-/// A list's triangles by kind, and the kind of each triangle of the scene.
-std::vector<AlphaKind> kindsOfTriangles(const Drawables& drawables) {
-  std::vector<AlphaKind> kinds(drawables.triangles.size());
-  for (const Drawable& drawable : drawables.list) {
-    for (uint32_t i = 0; i < drawable.triangle_count; ++i) {
-      kinds[drawables.triangles[drawable.first_triangle + i]] = drawable.alpha;
-    }
+/// The list's triangles behind the slots, in their order: a run of each kind that there is.
+std::vector<SlotRun> appendList(const TriangleList& list, std::vector<uint32_t>& slots) {
+  const auto begin = uint32_t(slots.size());
+  slots.insert(slots.end(), list.ids.begin(), list.ids.end());
+  const uint32_t ends[] = {0, list.masked_begin, list.blended_begin, uint32_t(list.ids.size())};
+  std::vector<SlotRun> runs;
+  for (uint32_t kind = 0; kind < 3; ++kind) {
+    const SlotRun run{begin + ends[kind], ends[kind + 1] - ends[kind], AlphaKind(kind)};
+    if (run.count > 0) runs.push_back(run);
   }
-  return kinds;
+  return runs;
 }
 
 }  // namespace
 
-DrawScene::DrawScene(const VulkanContext& context, const Scene& scene, const Drawables& drawables,
+DrawMesh::DrawMesh(const VulkanContext& context, const Scene& scene, const Drawables& drawables,
                      const TriangleLists& lists)
     : scene_(scene), drawables_(drawables) {
   for (const Drawable& drawable : drawables.list) has_glass_ = has_glass_ || drawable.alpha == AlphaKind::blended;
@@ -31,24 +33,11 @@ DrawScene::DrawScene(const VulkanContext& context, const Scene& scene, const Dra
                             whyLacks(context.abilities(), VulkanFeature::kIndependentBlend)));
   }
   std::vector<uint32_t> slots = drawables.triangles;
-  if (!lists.lists.empty()) {
-    const std::vector<AlphaKind> kinds = kindsOfTriangles(drawables);
-    for (const std::vector<uint32_t>& list : lists.lists) {
-      std::vector<SlotRun>& runs = lists_.emplace_back();
-      for (const AlphaKind kind : {AlphaKind::opaque, AlphaKind::masked, AlphaKind::blended}) {
-        SlotRun run{uint32_t(slots.size()), 0, kind};
-        for (const uint32_t triangle : list) {
-          if (kinds.at(triangle) == kind) slots.push_back(triangle);
-        }
-        run.count = uint32_t(slots.size() - run.first);
-        if (run.count > 0) runs.push_back(run);
-      }
-    }
-  }
+  for (const TriangleList& list : lists.lists) lists_.push_back(appendList(list, slots));
   // Vertices are counted in 32 bits.
   if (slots.size() >= (uint64_t(1) << 32) / 3) {
-    throw Error(fmt::format("{} triangles of the scene and of lists are too many to draw: {} at most", slots.size(),
-                            (uint64_t(1) << 32) / 3));
+    throw Error(fmt::format("{} triangles of the scene and of lists are too many to draw, {} at most; take fewer cells",
+                            slots.size(), (uint64_t(1) << 32) / 3));
   }
   positions_ = context.buffer(scene.vertexCount() * 12, "vertices of the scene");
   indices_ = context.buffer(slots.size() * 12, "triangles of the scene");
@@ -77,12 +66,12 @@ DrawScene::DrawScene(const VulkanContext& context, const Scene& scene, const Dra
   upload.finish();
 }
 
-SlotRun DrawScene::run(uint32_t drawable) const {
+SlotRun DrawMesh::run(uint32_t drawable) const {
   const Drawable& its = drawables_.list[drawable];
   return {its.first_triangle, its.triangle_count, its.alpha};
 }
 
-void DrawScene::describe(DrawLaunch& launch) const {
+void DrawMesh::describe(DrawLaunch& launch) const {
   launch.positions = positions_.address();
   launch.indices = indices_.address();
   launch.surfaces = surfaces_.bytes() > 0 ? surfaces_.address() : 0;

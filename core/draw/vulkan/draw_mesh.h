@@ -14,10 +14,10 @@ struct SlotRun {
 
 /// A scene's triangles on a device, in the drawables' order; behind them those of the lists. 12 bytes a vertex and a slot,
 /// and 4 more where anything has holes.
-class DrawScene {
+class DrawMesh {
  public:
   /// The scene and the drawables must live as long. Throws Error where it does not fit.
-  DrawScene(const VulkanContext& context, const Scene& scene, const Drawables& drawables, const TriangleLists& lists);
+  DrawMesh(const VulkanContext& context, const Scene& scene, const Drawables& drawables, const TriangleLists& lists);
 
   const Scene& scene() const { return scene_; }
   const Drawables& drawables() const { return drawables_; }
