@@ -40,7 +40,8 @@ SL_CONST uint kTestBoxes = 3u;    ///< whose boxes have shown
 SL_CONST uint kCullBlock = 256u;
 /// Words of a draw in a list: VkDrawIndexedIndirectCommand, or VkDrawIndirectCommand and an unused one.
 SL_CONST uint kDrawWords = 5u;
-/// Words of a list's head (CullLaunch::heads): draws, x, y, z groups of meshlets, triangles, drawables or meshlets.
+/// Words of a list's head (CullLaunch::heads): draws, x, y, z groups of meshlets, triangles, drawables or
+/// meshlets.
 SL_CONST uint kHeadWords = 8u;
 SL_CONST uint kHeadTriangles = 4u;
 /// Groups in a row of the grid of meshlets.
@@ -56,10 +57,11 @@ SL_STRUCT(CullLaunch) {
   uint64 heads;         ///< uint[kHeadWords] a list
   uint64 pyramid;       ///< float[] (core/shared/pyramid.h)
   uint64 candidates;    ///< uint[]: a bit a drawable: whether it may be drawn; 0: all may
-  uint64 meshlets;      ///< uint[]: of each meshlet how many vertices it has, their numbers, a word of corners a triangle
-  uint64 order;         ///< uint[]: blended units, the farthest first
-  uint blocks;          ///< of all units
-  float shrink;         ///< of guardBox, and pixels that the pyramid's test takes off: 0 but for tests of tests
+  uint64 meshlets;  ///< uint[]: of each meshlet how many vertices it has, their numbers, a word of corners a
+                    ///< triangle
+  uint64 order;     ///< uint[]: blended units, the farthest first
+  uint blocks;      ///< of all units
+  float shrink;     ///< of guardBox, and pixels that the pyramid's test takes off: 0 but for tests of tests
 };
 
 /// Numbers of a dispatch over units.
@@ -72,7 +74,7 @@ SL_STRUCT(DrawPush) {
 
 // Kinds of draws.
 SL_CONST uint kDrawIndexed = 0u;
-SL_CONST uint kDrawPlain = 1u;    ///< three vertices a slot, no index
+SL_CONST uint kDrawPlain = 1u;  ///< three vertices a slot, no index
 SL_CONST uint kDrawMeshlets = 2u;
 SL_CONST uint kDrawOrdered = 3u;  ///< plain, in CullLaunch::order, empty where a unit is not to be drawn
 

@@ -1,10 +1,11 @@
 // Which pixels a box may touch, and how near it may be there: never too little, whatever the rounding.
 //
-// What lies in a box is projected in float (camera.h), moved to the viewport, and snapped to fractions of a pixel; so
-// are the box's corners. Of a place p relative to the eye, a coordinate x = p . across errs by at most 2^-21 of
-// |p| . |across|, summed by axis: each difference, product and sum rounds once. All is widened by twice that. In pixels
-// come 1/64 for the snapping, which Vulkan promises to 1/16 at worst and GPUs do at 1/256, and for the viewport's
-// roundings. Depth is widened by 2^-14 of itself: it is interpolated over a triangle from three vertices.
+// What lies in a box is projected in float (camera.h), moved to the viewport, and snapped to fractions of a
+// pixel; so are the box's corners. Of a place p relative to the eye, a coordinate x = p . across errs by at
+// most 2^-21 of |p| . |across|, summed by axis: each difference, product and sum rounds once. All is widened
+// by twice that. In pixels come 1/64 for the snapping, which Vulkan promises to 1/16 at worst and GPUs do at
+// 1/256, and for the viewport's roundings. Depth is widened by 2^-14 of itself: it is interpolated over a
+// triangle from three vertices.
 #ifndef SL_BOX_EXTENT_H
 #define SL_BOX_EXTENT_H
 #include "core/shared/camera.h"
@@ -29,8 +30,8 @@ SL_FUNC float dotSize(vec3 a, vec3 b) {
   return (fabs(a.x) * fabs(b.x) + fabs(a.y) * fabs(b.y)) + fabs(a.z) * fabs(b.z);
 }
 
-/// Lowest and highest pixel centre within low .. high of the viewport's -1 .. 1, as numbers of pixels; none where the
-/// first is above the second.
+/// Lowest and highest pixel centre within low .. high of the viewport's -1 .. 1, as numbers of pixels; none
+/// where the first is above the second.
 SL_FUNC vec2 pixelRange(float low, float high, float size) {
   float first = (low * 0.5f + 0.5f) * size - (0.5f + kPixelGuard);
   float last = (high * 0.5f + 0.5f) * size - (0.5f - kPixelGuard);
@@ -43,8 +44,9 @@ SL_FUNC BoxExtent boxExtent(Camera camera, vec3 low, vec3 high) {
   result.pixels = uvec4(0u, 0u, 0u, 0u);
   result.depth = 1.0f;
   vec3 eye = xyz3(camera.eye);
-  vec3 farthest = vec3(max(fabs(low.x - eye.x), fabs(high.x - eye.x)), max(fabs(low.y - eye.y), fabs(high.y - eye.y)),
-                       max(fabs(low.z - eye.z), fabs(high.z - eye.z)));
+  vec3 farthest =
+      vec3(max(fabs(low.x - eye.x), fabs(high.x - eye.x)), max(fabs(low.y - eye.y), fabs(high.y - eye.y)),
+           max(fabs(low.z - eye.z), fabs(high.z - eye.z)));
   float slack_x = kExtentGuard * dotSize(farthest, xyz3(camera.across));
   float slack_y = kExtentGuard * dotSize(farthest, xyz3(camera.down));
   float slack_w = kExtentGuard * dotSize(farthest, xyz3(camera.forward));

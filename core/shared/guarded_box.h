@@ -1,5 +1,5 @@
-// A box grown so that its faces, drawn, lie before or on whatever in it covers a pixel: what core/draw/box_guard.h does in
-// double for queries, here in float, and therefore by twice as much.
+// A box grown so that its faces, drawn, lie before or on whatever in it covers a pixel: what
+// core/draw/box_guard.h does in double for queries, here in float, and therefore by twice as much.
 #ifndef SL_GUARDED_BOX_H
 #define SL_GUARDED_BOX_H
 #include "core/shared/box_extent.h"
@@ -11,7 +11,8 @@ SL_STRUCT(GuardedBox) {
   bool whole;  ///< it stays behind the near plane: else it cannot be drawn whole
 };
 
-/// shrink: pixels that the box is made smaller by, all around, instead of grown: a fault, for tests of tests; else 0.
+/// shrink: pixels that the box is made smaller by, all around, instead of grown: a fault, for tests of tests;
+/// else 0.
 SL_FUNC GuardedBox guardBox(Camera camera, vec3 low, vec3 high, float shrink) {
   vec3 eye = xyz3(camera.eye);
   float reach = 0.0f;
@@ -33,7 +34,8 @@ SL_FUNC GuardedBox guardBox(Camera camera, vec3 low, vec3 high, float shrink) {
   GuardedBox result;
   result.low = vec3(low.x - by, low.y - by, low.z - by);
   result.high = vec3(high.x + by, high.y + by, high.z + by);
-  float slack = by * (fabs(camera.forward.x) + fabs(camera.forward.y) + fabs(camera.forward.z)) + reach * 1.9073486e-6f;
+  float slack =
+      by * (fabs(camera.forward.x) + fabs(camera.forward.y) + fabs(camera.forward.z)) + reach * 1.9073486e-6f;
   result.whole = least - slack > camera.eye.w;
   return result;
 }

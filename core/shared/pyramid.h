@@ -1,9 +1,10 @@
 // The pyramid over a depth image: which numbers lie where.
 //
-// Level 0 is the image; each further level has half as many columns and rows, rounded up, down to a single texel. A
-// texel (x, y) of level k covers the pixels from (x, y) << k on, 2^k a side, as far as there are any: so a shift finds
-// the texel of a pixel at every size, and the texel of an odd size's last column covers one column, not none. It holds
-// the least depth of all pixels that it covers (the farthest: depth is reversed).
+// Level 0 is the image; each further level has half as many columns and rows, rounded up, down to a single
+// texel. A texel (x, y) of level k covers the pixels from (x, y) << k on, 2^k a side, as far as there are
+// any: so a shift finds the texel of a pixel at every size, and the texel of an odd size's last column covers
+// one column, not none. It holds the least depth of all pixels that it covers (the farthest: depth is
+// reversed).
 #ifndef SL_PYRAMID_H
 #define SL_PYRAMID_H
 #include "core/shared/language.h"

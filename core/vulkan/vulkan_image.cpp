@@ -3,8 +3,7 @@
 namespace sightline {
 
 VulkanImage::VulkanImage(const VulkanContext& context, VkFormat format, VkImageUsageFlags usage,
-                         VkImageAspectFlags aspect, const VulkanImageSize& size,
-                         const VulkanMemoryUse& use) {
+                         VkImageAspectFlags aspect, const VulkanImageSize& size, const VulkanMemoryUse& use) {
   const VulkanApi& api = context.api();
   auto info = vkStruct<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
   info.imageType = VK_IMAGE_TYPE_2D;

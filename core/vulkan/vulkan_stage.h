@@ -22,8 +22,8 @@ class VulkanStage {
   VulkanStage() = default;
   /// A compute shader ("count_bits.comp"). group_size: work items, its constant 0.
   static VulkanStage compute(const VulkanContext& context, const std::string& name, uint32_t group_size);
-  /// The same of shader "NAME.comp" with groups of SL_LIST_GROUP, compiled when it is first recorded, since who
-  /// only traces rays needs none of them.
+  /// The same of shader "NAME.comp" with groups of SL_LIST_GROUP, compiled when it is first recorded, since
+  /// who only traces rays needs none of them.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
   /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each.
   static VulkanStage rays(const VulkanContext& context, const std::string& generation,

@@ -22,7 +22,8 @@ VulkanHandle<VkQueryPool> queryPool(const VulkanContext& context, VkQueryType ty
 
 }  // namespace
 
-CommandRing::CommandRing(const VulkanContext& context, DrawClock clock) : context_(context), clock_(std::move(clock)) {
+CommandRing::CommandRing(const VulkanContext& context, DrawClock clock)
+    : context_(context), clock_(std::move(clock)) {
   for (size_t i = 0; i < kFirstEntries; ++i) entries_.push_back(make());
 }
 
@@ -50,7 +51,8 @@ std::unique_ptr<CommandRing::Entry> CommandRing::make() const {
   buffer_info.commandPool = pool;
   buffer_info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   buffer_info.commandBufferCount = 1;
-  checkVk(api.vkAllocateCommandBuffers(context_.device(), &buffer_info, &entry->commands), "vkAllocateCommandBuffers");
+  checkVk(api.vkAllocateCommandBuffers(context_.device(), &buffer_info, &entry->commands),
+          "vkAllocateCommandBuffers");
   const auto fence_info = vkStruct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
   VkFence fence = VK_NULL_HANDLE;
   checkVk(api.vkCreateFence(context_.device(), &fence_info, nullptr, &fence), "vkCreateFence");
@@ -147,9 +149,10 @@ bool CommandRing::answer(Entry& entry, uint64_t serial, Answers& answers, uint32
     const double start = now();
     ++waits_;
     uint32_t samples = 0;
-    checkVk(context_.api().vkGetQueryPoolResults(context_.device(), entry.queries.get(), query, 1, sizeof samples,
-                                                 &samples, sizeof samples, VK_QUERY_RESULT_WAIT_BIT),
-            "vkGetQueryPoolResults");
+    checkVk(
+        context_.api().vkGetQueryPoolResults(context_.device(), entry.queries.get(), query, 1, sizeof samples,
+                                             &samples, sizeof samples, VK_QUERY_RESULT_WAIT_BIT),
+        "vkGetQueryPoolResults");
     answers[query] = samples > 0;
     cpu_.wait += now() - start;
   }
@@ -175,17 +178,19 @@ void CommandRing::harvest(Entry& entry) {
   const VulkanApi& api = context_.api();
   if (const auto count = uint32_t(entry.answers->size()); count > 0) {
     std::vector<uint32_t> samples(count);
-    checkVk(api.vkGetQueryPoolResults(context_.device(), entry.queries.get(), 0, count, count * 4, samples.data(), 4, 0),
+    checkVk(api.vkGetQueryPoolResults(context_.device(), entry.queries.get(), 0, count, count * 4,
+                                      samples.data(), 4, 0),
             "vkGetQueryPoolResults");
     for (uint32_t i = 0; i < count; ++i) (*entry.answers)[i] = samples[i] > 0;
   }
   if (entry.parts.empty()) return;
   std::array<uint64_t, kTimes> ticks{};
   const auto count = uint32_t(entry.parts.size() + 1);
-  checkVk(api.vkGetQueryPoolResults(context_.device(), entry.times.get(), 0, count, count * 8, ticks.data(), 8,
-                                    VK_QUERY_RESULT_64_BIT),
+  checkVk(api.vkGetQueryPoolResults(context_.device(), entry.times.get(), 0, count, count * 8, ticks.data(),
+                                    8, VK_QUERY_RESULT_64_BIT),
           "vkGetQueryPoolResults");
-  auto frame = std::find_if(frames_.begin(), frames_.end(), [&](const FrameTicks& f) { return f.frame == entry.frame; });
+  auto frame = std::find_if(frames_.begin(), frames_.end(),
+                            [&](const FrameTicks& f) { return f.frame == entry.frame; });
   if (frame == frames_.end()) {
     frames_.push_back({entry.frame});
     if (frames_.size() > kKeptFrames) frames_.pop_front();

@@ -20,7 +20,8 @@ struct GpuTimes {
   double frame = 0;                      ///< from the first command to the last
 };
 
-/// The processor's time in a frame in milliseconds, without what the method itself takes; all 0 without a clock.
+/// The processor's time in a frame in milliseconds, without what the method itself takes; all 0 without a
+/// clock.
 struct CpuTimes {
   double record = 0, submit = 0, wait = 0;
 };
@@ -28,8 +29,8 @@ struct CpuTimes {
 /// Milliseconds from whenever; empty: no time is measured.
 using DrawClock = std::function<double()>;
 
-/// Command buffers that are used in turn, each with what a submit takes: a fence, times, queries, boxes. The oldest is
-/// taken if it has run, else there will be one more, so that nobody waits for one.
+/// Command buffers that are used in turn, each with what a submit takes: a fence, times, queries, boxes. The
+/// oldest is taken if it has run, else there will be one more, so that nobody waits for one.
 class CommandRing {
  public:
   /// Answers of a submit's queries: 1, 0, or -1 while unknown.

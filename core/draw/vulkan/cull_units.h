@@ -12,8 +12,9 @@ struct CullUnits {
   std::vector<CullUnit> units;
   std::array<uint32_t, 4> ends{};  ///< ends[kind] .. ends[kind + 1]: the units of an AlphaKind
   // Of meshlets only:
-  std::vector<uint32_t> indices;  ///< three vertices a slot, of the opaque units; empty: slots are the drawables'
-  std::vector<uint32_t> words;    ///< CullLaunch::meshlets
+  std::vector<uint32_t>
+      indices;  ///< three vertices a slot, of the opaque units; empty: slots are the drawables'
+  std::vector<uint32_t> words;  ///< CullLaunch::meshlets
 };
 
 /// A unit a drawable.
@@ -22,8 +23,8 @@ CullUnits drawableUnits(const Drawables& drawables);
 /// Most vertices and triangles of a meshlet: vk_shaders/meshlet.mesh emits no more.
 inline constexpr uint32_t kMeshletVertices = 64, kMeshletTriangles = 124;
 
-/// Opaque drawables cut into meshlets (meshoptimizer), a unit each; the others as they are. Meshlets have no cones: both
-/// sides of a triangle are seen.
+/// Opaque drawables cut into meshlets (meshoptimizer), a unit each; the others as they are. Meshlets have no
+/// cones: both sides of a triangle are seen.
 CullUnits meshletUnits(const Scene& scene, const Drawables& drawables);
 
 }  // namespace sightline

@@ -19,7 +19,8 @@ void DepthCheck::fit() {
   for (VulkanBuffer* buffer : {&reference_, &tested_, &ids_}) *buffer = VulkanBuffer();
   target_ = DrawTarget(context, drawing_.passes(), drawn.width(), drawn.height());
   const VulkanMemoryUse use("images to compare", "a smaller resolution, or leave the check out");
-  for (VulkanBuffer* buffer : {&reference_, &tested_, &ids_}) *buffer = context.buffer(4 * drawn.pixels(), use);
+  for (VulkanBuffer* buffer : {&reference_, &tested_, &ids_})
+    *buffer = context.buffer(4 * drawn.pixels(), use);
   const uint64_t counts = 4 * (kDrawableCounts + 2 * drawing_.mesh().drawables().list.size());
   if (counts_.bytes() > 0) return;
   counts_ = context.buffer(counts, use);

@@ -14,11 +14,12 @@ struct DepthDifference {
   uint64_t too_near_pixels = 0;  ///< nearer: never, unless the device draws the same triangles in two ways
   std::vector<Missing> missing;  ///< by drawable
   uint32_t largest = 0;          ///< most false pixels of one drawable
-  std::vector<uint32_t> shown;   ///< drawables with a pixel in the reference: the fewest that a frame can do with
+  std::vector<uint32_t>
+      shown;  ///< drawables with a pixel in the reference: the fewest that a frame can do with
 };
 
-/// Compares frames with a picture of all opaque and masked drawables, drawn by the same pipelines without any culling, bit
-/// by bit: depth does not depend on the order of drawing. What blends writes none.
+/// Compares frames with a picture of all opaque and masked drawables, drawn by the same pipelines without any
+/// culling, bit by bit: depth does not depend on the order of drawing. What blends writes none.
 class DepthCheck {
  public:
   /// The drawing must live as long.

@@ -25,9 +25,10 @@ std::vector<SlotRun> appendList(const TriangleList& list, std::vector<uint32_t>&
 }  // namespace
 
 DrawMesh::DrawMesh(const VulkanContext& context, const Scene& scene, const Drawables& drawables,
-                     const TriangleLists& lists)
+                   const TriangleLists& lists)
     : scene_(scene), drawables_(drawables) {
-  for (const Drawable& drawable : drawables.list) has_glass_ = has_glass_ || drawable.alpha == AlphaKind::blended;
+  for (const Drawable& drawable : drawables.list)
+    has_glass_ = has_glass_ || drawable.alpha == AlphaKind::blended;
   if (has_glass_ && !context.has(VulkanFeature::kIndependentBlend)) {
     throw Error(fmt::format("{} ({}) cannot draw glass: {}", context.info().id, context.info().name,
                             whyLacks(context.abilities(), VulkanFeature::kIndependentBlend)));
@@ -36,8 +37,9 @@ DrawMesh::DrawMesh(const VulkanContext& context, const Scene& scene, const Drawa
   for (const TriangleList& list : lists.lists) lists_.push_back(appendList(list, slots));
   // Vertices are counted in 32 bits.
   if (slots.size() >= (uint64_t(1) << 32) / 3) {
-    throw Error(fmt::format("{} triangles of the scene and of lists are too many to draw, {} at most; take fewer cells",
-                            slots.size(), (uint64_t(1) << 32) / 3));
+    throw Error(fmt::format(
+        "{} triangles of the scene and of lists are too many to draw, {} at most; take fewer cells",
+        slots.size(), (uint64_t(1) << 32) / 3));
   }
   positions_ = context.buffer(scene.vertexCount() * 12, "vertices of the scene");
   indices_ = context.buffer(slots.size() * 12, "triangles of the scene");

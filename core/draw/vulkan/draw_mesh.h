@@ -12,12 +12,13 @@ struct SlotRun {
   AlphaKind kind = AlphaKind::opaque;
 };
 
-/// A scene's triangles on a device, in the drawables' order; behind them those of the lists. 12 bytes a vertex and a slot,
-/// and 4 more where anything has holes.
+/// A scene's triangles on a device, in the drawables' order; behind them those of the lists. 12 bytes a
+/// vertex and a slot, and 4 more where anything has holes.
 class DrawMesh {
  public:
   /// The scene and the drawables must live as long. Throws Error where it does not fit.
-  DrawMesh(const VulkanContext& context, const Scene& scene, const Drawables& drawables, const TriangleLists& lists);
+  DrawMesh(const VulkanContext& context, const Scene& scene, const Drawables& drawables,
+           const TriangleLists& lists);
 
   const Scene& scene() const { return scene_; }
   const Drawables& drawables() const { return drawables_; }

@@ -8,7 +8,8 @@
 namespace sightline {
 namespace {
 
-constexpr VkFormat kIds = VK_FORMAT_R32_UINT, kDepth = VK_FORMAT_D32_SFLOAT, kGlass = VK_FORMAT_R8G8B8A8_UNORM;
+constexpr VkFormat kIds = VK_FORMAT_R32_UINT, kDepth = VK_FORMAT_D32_SFLOAT,
+                   kGlass = VK_FORMAT_R8G8B8A8_UNORM;
 
 VkAttachmentDescription attachmentOf(VkFormat format, bool clear) {
   VkAttachmentDescription description{};
@@ -68,13 +69,15 @@ VulkanHandle<VkRenderPass> makePass(const VulkanContext& context, bool glass, bo
 DrawPasses::DrawPasses(const VulkanContext& context, bool glass)
     : glass_(glass), clearing_(makePass(context, glass, true)), loading_(makePass(context, glass, false)) {}
 
-DrawTarget::DrawTarget(const VulkanContext& context, const DrawPasses& passes, uint32_t width, uint32_t height)
+DrawTarget::DrawTarget(const VulkanContext& context, const DrawPasses& passes, uint32_t width,
+                       uint32_t height)
     : width_(width), height_(height) {
   const DeviceInfo& info = context.info();
   const uint32_t most = context.limits().image_side;
   if (width > most || height > most) {
-    throw Error(fmt::format("{} ({}) draws images of {} pixels a side at most, not {} x {}; give a smaller resolution",
-                            info.id, info.name, most, width, height));
+    throw Error(fmt::format(
+        "{} ({}) draws images of {} pixels a side at most, not {} x {}; give a smaller resolution", info.id,
+        info.name, most, width, height));
   }
   const std::string what = fmt::format("images of {} x {} pixels", width, height);
   const VulkanMemoryUse use(what.c_str(), "a smaller resolution");
@@ -94,7 +97,8 @@ DrawTarget::DrawTarget(const VulkanContext& context, const DrawPasses& passes, u
   frame.height = height;
   frame.layers = 1;
   VkFramebuffer framebuffer = VK_NULL_HANDLE;
-  checkVk(context.api().vkCreateFramebuffer(context.device(), &frame, nullptr, &framebuffer), "vkCreateFramebuffer");
+  checkVk(context.api().vkCreateFramebuffer(context.device(), &frame, nullptr, &framebuffer),
+          "vkCreateFramebuffer");
   framebuffer_ = {context, framebuffer, [](const VulkanContext& c, VkFramebuffer handle) {
                     c.api().vkDestroyFramebuffer(c.device(), handle, nullptr);
                   }};
@@ -125,9 +129,26 @@ void DrawTarget::copy(const VulkanContext& context, VkCommandBuffer commands, Im
   const VulkanImage& from = image == Image::ids ? ids_ : image == Image::depth ? depth_ : glass_;
   VkBufferImageCopy region{};
   region.imageSubresource = {
-      VkImageAspectFlags(image == Image::depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 0, 1};
+      VkImageAspectFlags(image == Image::depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT), 0, 0,
+      1};
   region.imageExtent = {width_, height_, 1};
-  context.api().vkCmdCopyImageToBuffer(commands, from.get(), VK_IMAGE_LAYOUT_GENERAL, to.get(), 1, &region);
+  auto change = vkStruct<VkImageMemoryBarrier>(VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER);
+  change.srcAccessMask = kDrawWrites;
+  change.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
+  change.oldLayout = VK_IMAGE_LAYOUT_GENERAL;
+  change.newLayout = VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL;
+  change.srcQueueFamilyIndex = change.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  change.image = from.get();
+  change.subresourceRange = {region.imageSubresource.aspectMask, 0, 1, 0, 1};
+  const VulkanApi& api = context.api();
+  api.vkCmdPipelineBarrier(commands, kDrawStages, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr,
+                           1, &change);
+  api.vkCmdCopyImageToBuffer(commands, from.get(), change.newLayout, to.get(), 1, &region);
+  std::swap(change.oldLayout, change.newLayout);
+  change.srcAccessMask = 0;
+  change.dstAccessMask = kDrawReads | kDrawWrites;
+  api.vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, kDrawStages, 0, 0, nullptr, 0, nullptr,
+                           1, &change);
 }
 
 }  // namespace sightline

@@ -3,9 +3,10 @@
 
 namespace sightline {
 
-/// How frames are drawn: into an image of drawables' numbers (R32_UINT) and one of depth (D32, reversed: 0 is as far as can
-/// be), and with glass a third, its colour and how much it lets through (R8G8B8A8_UNORM, no colour and all). Images stay in
-/// the layout GENERAL. Passes wait for each other's drawing and for copies of the images.
+/// How frames are drawn: into an image of drawables' numbers (R32_UINT) and one of depth (D32, reversed: 0 is
+/// as far as can be), and with glass a third, its colour and how much it lets through (R8G8B8A8_UNORM, no
+/// colour and all). Between passes and copies images are in the layout GENERAL. Passes wait for each other's
+/// drawing and for copies of the images.
 class DrawPasses {
  public:
   DrawPasses(const VulkanContext& context, bool glass);
@@ -31,12 +32,14 @@ class DrawTarget {
   uint64_t pixels() const { return uint64_t(width_) * height_; }
 
   /// Records the start of a pass, with viewport and scissor.
-  void begin(const VulkanContext& context, VkCommandBuffer commands, const DrawPasses& passes, bool clear) const;
+  void begin(const VulkanContext& context, VkCommandBuffer commands, const DrawPasses& passes,
+             bool clear) const;
 
   enum class Image { ids, depth, glass };
-  /// Records the copying of an image to a buffer, four bytes a pixel, row after row from the top. Drawing comes before
-  /// it; the caller's barrier comes after it.
-  void copy(const VulkanContext& context, VkCommandBuffer commands, Image image, const VulkanBuffer& to) const;
+  /// Records the copying of an image to a buffer, four bytes a pixel, row after row from the top. Drawing
+  /// comes before it; the caller's barrier comes after it.
+  void copy(const VulkanContext& context, VkCommandBuffer commands, Image image,
+            const VulkanBuffer& to) const;
 
  private:
   uint32_t width_ = 0, height_ = 0;

@@ -40,8 +40,8 @@ std::array<VkPipelineColorBlendAttachmentState, 2> blendingOf(DrawKind kind) {
     images[1].dstColorBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
     images[1].srcAlphaBlendFactor = VK_BLEND_FACTOR_ZERO;
     images[1].dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
-    images[1].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                               VK_COLOR_COMPONENT_A_BIT;
+    images[1].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                               VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
   }
   return images;
 }
@@ -51,8 +51,9 @@ std::array<VkPipelineColorBlendAttachmentState, 2> blendingOf(DrawKind kind) {
 DrawPrograms::DrawPrograms(const VulkanContext& context, const DrawPasses& passes)
     : context_(context),
       passes_(passes),
-      stages_(VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT |
-              (context.has(VulkanFeature::kMeshShaders) ? VkShaderStageFlags(VK_SHADER_STAGE_MESH_BIT_EXT) : 0)),
+      stages_(
+          VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_COMPUTE_BIT |
+          (context.has(VulkanFeature::kMeshShaders) ? VkShaderStageFlags(VK_SHADER_STAGE_MESH_BIT_EXT) : 0)),
       layout_(pushLayout(context, stages_, sizeof(DrawPush))) {}
 
 void DrawPrograms::bind(VkCommandBuffer commands, DrawKind kind, const DrawPush& push) {
@@ -75,9 +76,9 @@ VkPipeline DrawPrograms::compute(const char* name) {
     info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
     info.layout = layout_.get();
     VkPipeline pipeline = VK_NULL_HANDLE;
-    checkVk(
-        context_.api().vkCreateComputePipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
-        "vkCreateComputePipelines");
+    checkVk(context_.api().vkCreateComputePipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr,
+                                                    &pipeline),
+            "vkCreateComputePipelines");
     made = {context_, pipeline, destroyPipeline};
   }
   return made.get();
@@ -90,8 +91,8 @@ VkPipeline DrawPrograms::graphics(DrawKind kind) {
   const bool boxes = kind == DrawKind::query_box || kind == DrawKind::unit_box;
   const VulkanHandle<VkShaderModule> vertex = shaderModule(context_, names.vertex);
   VulkanHandle<VkShaderModule> fragment;
-  std::vector<VkPipelineShaderStageCreateInfo> stages = {
-      stageInfo(kind == DrawKind::meshlets ? VK_SHADER_STAGE_MESH_BIT_EXT : VK_SHADER_STAGE_VERTEX_BIT, vertex.get())};
+  std::vector<VkPipelineShaderStageCreateInfo> stages = {stageInfo(
+      kind == DrawKind::meshlets ? VK_SHADER_STAGE_MESH_BIT_EXT : VK_SHADER_STAGE_VERTEX_BIT, vertex.get())};
   if (names.fragment != nullptr) {
     fragment = shaderModule(context_, names.fragment);
     stages.push_back(stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.get()));
@@ -105,7 +106,8 @@ VkPipeline DrawPrograms::graphics(DrawKind kind) {
       vkStruct<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
   viewport.viewportCount = viewport.scissorCount = 1;
   const VkDynamicState sizes[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  auto dynamic = vkStruct<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+  auto dynamic =
+      vkStruct<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
   dynamic.dynamicStateCount = 2;
   dynamic.pDynamicStates = sizes;
   auto raster = vkStruct<VkPipelineRasterizationStateCreateInfo>(
@@ -113,11 +115,11 @@ VkPipeline DrawPrograms::graphics(DrawKind kind) {
   raster.polygonMode = VK_POLYGON_MODE_FILL;
   raster.cullMode = VK_CULL_MODE_NONE;
   raster.lineWidth = 1;
-  auto samples =
-      vkStruct<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+  auto samples = vkStruct<VkPipelineMultisampleStateCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  auto depth =
-      vkStruct<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+  auto depth = vkStruct<VkPipelineDepthStencilStateCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
   depth.depthTestEnable = VK_TRUE;
   depth.depthWriteEnable = boxes || kind == DrawKind::glass ? VK_FALSE : VK_TRUE;
   depth.depthCompareOp = boxes ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_GREATER;
@@ -142,7 +144,8 @@ VkPipeline DrawPrograms::graphics(DrawKind kind) {
   info.layout = layout_.get();
   info.renderPass = passes_.clearing();
   VkPipeline pipeline = VK_NULL_HANDLE;
-  checkVk(context_.api().vkCreateGraphicsPipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+  checkVk(context_.api().vkCreateGraphicsPipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr,
+                                                   &pipeline),
           "vkCreateGraphicsPipelines");
   made = {context_, pipeline, destroyPipeline};
   return made.get();

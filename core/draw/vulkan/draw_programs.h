@@ -27,7 +27,8 @@ class DrawPrograms {
   /// Binds a pipeline for draws within a pass, and pushes.
   void bind(VkCommandBuffer commands, DrawKind kind, const DrawPush& push);
   /// Records a dispatch of a compute shader ("pyramid.comp").
-  void run(VkCommandBuffer commands, const char* name, const DrawPush& push, uint32_t groups_x, uint32_t groups_y = 1);
+  void run(VkCommandBuffer commands, const char* name, const DrawPush& push, uint32_t groups_x,
+           uint32_t groups_y = 1);
 
  private:
   VkPipeline graphics(DrawKind kind);

@@ -5,8 +5,8 @@
 
 namespace sightline {
 
-/// What drawing takes: a queue with graphics and compute shaders, and what VulkanFeature names; no ray tracing. What
-/// only some methods take is welcome.
+/// What drawing takes: a queue with graphics and compute shaders, and what VulkanFeature names; no ray
+/// tracing. What only some methods take is welcome.
 VulkanNeeds drawingNeeds();
 
 /// Methods that choose on the GPU what is drawn.

@@ -24,8 +24,8 @@ uint32_t blocksOf(uint32_t units) {
   return (units + kCullBlock - 1) / kCullBlock;
 }
 
-void updateBuffer(const VulkanContext& context, VkCommandBuffer commands, const VulkanBuffer& to, const void* data,
-                  uint64_t bytes) {
+void updateBuffer(const VulkanContext& context, VkCommandBuffer commands, const VulkanBuffer& to,
+                  const void* data, uint64_t bytes) {
   for (uint64_t first = 0; first < bytes; first += kUpdateBytes) {
     context.api().vkCmdUpdateBuffer(commands, to.get(), first, std::min(kUpdateBytes, bytes - first),
                                     static_cast<const char*>(data) + first);
@@ -114,16 +114,16 @@ void GpuCulling::createBuffers() {
 }
 
 void GpuCulling::between(VkCommandBuffer commands) const {
-  drawing_.barrier(commands, kShaderStages, VK_ACCESS_SHADER_WRITE_BIT, kShaderStages,
-                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+  drawing_.barrier(
+      commands, kShaderStages, VK_ACCESS_SHADER_WRITE_BIT, kShaderStages,
+      VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
 }
 
 void GpuCulling::prepare(VkCommandBuffer commands, std::span<const uint32_t> candidates, bool restricted,
                          bool changed) {
   const VulkanContext& context = drawing_.context();
-  const uint64_t texels =
-      levelStart(drawing_.camera().size.x, drawing_.camera().size.y,
-                 pyramidLevels(drawing_.camera().size.x, drawing_.camera().size.y));
+  const uint64_t texels = levelStart(drawing_.camera().size.x, drawing_.camera().size.y,
+                                     pyramidLevels(drawing_.camera().size.x, drawing_.camera().size.y));
   if (method_ != GpuMethod::boxes && texels > pyramid_texels_) {
     drawing_.ring().drain();
     pyramid_ = VulkanBuffer();
@@ -170,13 +170,15 @@ void GpuCulling::orderBlended(VkCommandBuffer commands) {
 void GpuCulling::test(VkCommandBuffer commands, Range range, uint32_t list, uint32_t test) {
   if (range.count == 0) return;
   drawing_.programs().run(commands, "cull_units.comp",
-                          drawing_.push(address(), {range.first, range.count, list, test}), blocksOf(range.count));
+                          drawing_.push(address(), {range.first, range.count, list, test}),
+                          blocksOf(range.count));
 }
 
 void GpuCulling::writeDraws(VkCommandBuffer commands, Range range, uint32_t list, uint32_t kind) {
   if (range.count == 0) return;
   drawing_.programs().run(commands, "write_draws.comp",
-                          drawing_.push(address(), {range.first, range.count, list, kind}), blocksOf(range.count));
+                          drawing_.push(address(), {range.first, range.count, list, kind}),
+                          blocksOf(range.count));
 }
 
 void GpuCulling::drawOpaque(VkCommandBuffer commands, uint32_t list) {
@@ -193,7 +195,8 @@ void GpuCulling::drawOpaque(VkCommandBuffer commands, uint32_t list) {
   drawing_.programs().bind(commands, DrawKind::opaque, drawing_.push());
   const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.mesh().indices();
   api.vkCmdBindIndexBuffer(commands, indices.get(), 0, VK_INDEX_TYPE_UINT32);
-  api.vkCmdDrawIndexedIndirectCount(commands, draws_.get(), 0, heads_.get(), head, opaque.count, kDrawWords * 4);
+  api.vkCmdDrawIndexedIndirectCount(commands, draws_.get(), 0, heads_.get(), head, opaque.count,
+                                    kDrawWords * 4);
 }
 
 void GpuCulling::drawAll(VkCommandBuffer commands) {
@@ -269,7 +272,8 @@ void GpuCulling::drawLate(CommandRing::Entry& entry) {
   }
   if (blended.count > 0) {
     drawing_.programs().bind(entry.commands, DrawKind::glass, drawing_.push());
-    api.vkCmdDrawIndirect(entry.commands, draws_.get(), uint64_t(blended.first) * kStride, blended.count, kStride);
+    api.vkCmdDrawIndirect(entry.commands, draws_.get(), uint64_t(blended.first) * kStride, blended.count,
+                          kStride);
   }
   drawing_.endPass(entry);
   drawing_.ring().mark(entry, GpuPart::draw);

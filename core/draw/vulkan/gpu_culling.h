@@ -18,28 +18,30 @@ struct GpuCullingOptions {
   GpuCullingFaults faults = {};
 };
 
-/// Culls on the GPU in two passes: what was seen in the frame before is drawn at once; what that hides is found, by a
-/// pyramid of its depth or by drawn boxes; what is seen and was not drawn is drawn then. The processor records one submit
-/// a frame, whatever is seen, and waits for nothing.
+/// Culls on the GPU in two passes: what was seen in the frame before is drawn at once; what that hides is
+/// found, by a pyramid of its depth or by drawn boxes; what is seen and was not drawn is drawn then. The
+/// processor records one submit a frame, whatever is seen, and waits for nothing.
 ///
-/// Based on: the two passes of S. Hill and D. Collin, Practical, Dynamic Visibility for Games, GPU Pro 2, 2011, and of U.
-/// Haar and S. Aaltonen, GPU-Driven Rendering Pipelines, SIGGRAPH 2015. Where we differ: the pyramid is exact at all sizes
-/// (core/shared/pyramid.h), and boxes are guarded against the device's roundings (core/shared/box_extent.h), so that no
-/// pixel differs from the picture of all drawables. Blended ones are drawn last, sorted on the processor by the distance of
-/// their boxes' centres along the view, of equally far ones that with the higher number first (FrameRecorder).
+/// Based on: the two passes of S. Hill and D. Collin, Practical, Dynamic Visibility for Games, GPU Pro 2,
+/// 2011, and of U. Haar and S. Aaltonen, GPU-Driven Rendering Pipelines, SIGGRAPH 2015. Where we differ: the
+/// pyramid is exact at all sizes (core/shared/pyramid.h), and boxes are guarded against the device's
+/// roundings (core/shared/box_extent.h), so that no pixel differs from the picture of all drawables. Blended
+/// ones are drawn last, sorted on the processor by the distance of their boxes' centres along the view, of
+/// equally far ones that with the higher number first (FrameRecorder).
 class GpuCulling {
  public:
   /// The drawing must live as long. Throws Error that names what the device lacks, or what does not fit.
   GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullingOptions& options = {});
 
-  /// Draws a frame. candidates: drawables that may be drawn, in any order; nothing: all may. changed: they are other than
-  /// in the last frame (so that a set is copied when its cell is entered, not in each frame).
+  /// Draws a frame. candidates: drawables that may be drawn, in any order; nothing: all may. changed: they
+  /// are other than in the last frame (so that a set is copied when its cell is entered, not in each frame).
   void drawFrame(const Camera& camera);
   void drawFrame(const Camera& camera, std::span<const uint32_t> candidates, bool changed);
   /// As if just made.
   void forget() { forget_ = true; }
 
-  /// Of the last frame: draws, objects (meshlets where they are the units), triangles, submits. Waits until it has run.
+  /// Of the last frame: draws, objects (meshlets where they are the units), triangles, submits. Waits until
+  /// it has run.
   FrameCounts counts();
   bool usesMeshShaders() const { return meshes_; }
   uint32_t unitCount() const { return uint32_t(units_.units.size()); }
@@ -79,8 +81,8 @@ class GpuCulling {
   uint64_t pyramid_texels_ = 0;
   CommandRing::Entry* last_ = nullptr;
   uint64_t last_serial_ = 0;
-  VulkanBuffer launch_, unit_buffer_, states_, block_counts_, draws_, listed_, heads_, pyramid_, candidates_, meshlets_,
-      indices_, order_;
+  VulkanBuffer launch_, unit_buffer_, states_, block_counts_, draws_, listed_, heads_, pyramid_, candidates_,
+      meshlets_, indices_, order_;
 };
 
 }  // namespace sightline

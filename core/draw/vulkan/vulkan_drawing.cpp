@@ -102,7 +102,8 @@ void VulkanDrawing::barrier(VkCommandBuffer commands, VkPipelineStageFlags from,
 
 std::vector<uint32_t> VulkanDrawing::read(const DrawTarget& target, DrawTarget::Image image) const {
   std::vector<uint32_t> pixels(target.pixels());
-  const VulkanBuffer buffer = context_.buffer(4 * pixels.size(), "an image's pixels", VulkanMemory::kReadback);
+  const VulkanBuffer buffer =
+      context_.buffer(4 * pixels.size(), "an image's pixels", VulkanMemory::kReadback);
   VulkanCommands commands(context_, context_.queue(), context_.queueFamily());
   target.copy(context_, commands.next(), image, buffer);
   commands.finish();

@@ -1,7 +1,7 @@
 #pragma once
 #include "core/draw/vulkan/command_ring.h"
-#include "core/draw/vulkan/draw_programs.h"
 #include "core/draw/vulkan/draw_mesh.h"
+#include "core/draw/vulkan/draw_programs.h"
 
 namespace sightline {
 
@@ -10,13 +10,14 @@ struct DrawingOptions {
   DrawClock clock = {};        ///< for times of the processor only: nothing else depends on it
 };
 
-/// A device that draws a scene's drawables into images in memory: what all methods share. One thread at a time.
+/// A device that draws a scene's drawables into images in memory: what all methods share. One thread at a
+/// time.
 ///
 /// A frame is beginFrame, submits, endFrame. The GPU runs submits one after another, whoever waits.
 class VulkanDrawing {
  public:
-  /// selector: "vulkan", "vulkan:INDEX" or "vulkan:PART-OF-NAME". Scene, drawables and lists must live as long. Throws
-  /// Error that names what the device lacks, or what does not fit.
+  /// selector: "vulkan", "vulkan:INDEX" or "vulkan:PART-OF-NAME". Scene, drawables and lists must live as
+  /// long. Throws Error that names what the device lacks, or what does not fit.
   VulkanDrawing(const std::string& selector, const Scene& scene, const Drawables& drawables,
                 const TriangleLists& lists = {}, const DrawingOptions& options = {});
   VulkanDrawing(const VulkanDrawing&) = delete;
@@ -47,11 +48,12 @@ class VulkanDrawing {
   /// Records the draw of a run, in a pass; binds what it takes unless `bound` already is.
   void draw(VkCommandBuffer commands, const SlotRun& run, uint32_t drawable, std::optional<AlphaKind>& bound);
   /// Records a barrier of memory.
-  void barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags written, VkPipelineStageFlags to,
-               VkAccessFlags used) const;
+  void barrier(VkCommandBuffer commands, VkPipelineStageFlags from, VkAccessFlags written,
+               VkPipelineStageFlags to, VkAccessFlags used) const;
 
-  /// The last frame's images, row after row from the top: drawables (kNoDrawable: none), reversed depth, glass (R in the
-  /// lowest byte; A: how much of what is behind shows; empty without glass). Wait until all has run.
+  /// The last frame's images, row after row from the top: drawables (kNoDrawable: none), reversed depth,
+  /// glass (R in the lowest byte; A: how much of what is behind shows; empty without glass). Wait until all
+  /// has run.
   std::vector<uint32_t> readIds() const { return read(target_, DrawTarget::Image::ids); }
   std::vector<float> readDepth() const { return readDepth(target_); }
   std::vector<uint32_t> readGlass() const;
@@ -68,7 +70,7 @@ class VulkanDrawing {
   VulkanBuffer launch_buffer_;
   uint64_t frame_ = 0;
   bool described_ = false, drawn_ = false;  ///< in this frame
-  CommandRing ring_;  // goes, and waits, first
+  CommandRing ring_;                        // goes, and waits, first
 };
 
 }  // namespace sightline

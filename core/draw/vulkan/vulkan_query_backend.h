@@ -4,9 +4,10 @@
 
 namespace sightline {
 
-/// Draws and occlusion queries of a Vulkan device. Each submit is one render pass: its draws, then its queries. Within a
-/// pass tests of depth follow the order of drawing, so the queries need no barrier to see the draws; passes wait for each
-/// other's images. Whether answers have arrived is asked of the driver without waiting.
+/// Draws and occlusion queries of a Vulkan device. Each submit is one render pass: its draws, then its
+/// queries. Within a pass tests of depth follow the order of drawing, so the queries need no barrier to see
+/// the draws; passes wait for each other's images. Whether answers have arrived is asked of the driver
+/// without waiting.
 class VulkanQueryBackend : public QueryBackend {
  public:
   explicit VulkanQueryBackend(VulkanDrawing& drawing) : drawing_(drawing) {}
