@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/shared/vulkan_push.h"
 #include "core/vulkan/vulkan_context.h"
@@ -25,7 +26,8 @@ class VulkanStage {
   /// The same of shader "NAME.comp" with groups of SL_LIST_GROUP, compiled when it is first recorded, since
   /// who only traces rays needs none of them.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
-  /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each.
+  /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each. Threads may make
+  /// several at once (a driver takes two seconds for one).
   static VulkanStage rays(const VulkanContext& context, const std::string& generation,
                           const std::string& miss, const std::string& hit);
 
@@ -40,6 +42,7 @@ class VulkanStage {
   }
   void createPipeline(const std::string& name) const;
   void createRayPipeline(const std::string& generation, const std::string& miss, const std::string& hit);
+  void uploadTable() const;
 
   const VulkanContext* context_ = nullptr;
   VkShaderStageFlags stages_ = 0;
@@ -47,9 +50,10 @@ class VulkanStage {
   VulkanHandle<VkPipelineLayout> layout_;
   std::string list_name_;                      ///< a list's shader, to be compiled at the first record()
   mutable VulkanHandle<VkPipeline> pipeline_;  ///< a device's stages are recorded by one thread at a time
-  VulkanBuffer table_;                         ///< shader binding table: ray generation, miss, hit
-  VkDeviceAddress table_start_ = 0;
   uint64_t table_stride_ = 0;
+  std::vector<char> table_records_;  ///< shader binding table: ray generation, miss, hit
+  mutable VulkanBuffer table_;       ///< of them, from the first record() on
+  mutable VkDeviceAddress table_start_ = 0;
 };
 
 }  // namespace sightline

@@ -24,6 +24,7 @@ namespace sightline {
 ///   void fill(Buffer, word, bytes), copy(from, to, bytes)
 ///   StageLaunch& launch()                      of the next run
 ///   void bind(StageBuffer, Buffer)             for the runs that follow
+///   void prepare(span<const GpuStage>)         compiles them, if that has to be done
 ///   void run(GpuStage, count)                  over so many rays or work items, after all before it
 ///   array takeCounters()                       waits; kCounterWords words, which are 0 again then
 ///
@@ -43,6 +44,12 @@ class GpuSampler : public Device {
   }
 
   DeviceInfo info() const override { return api_.info(); }
+
+  void prepare(bool explores, const StageParams& params) override {
+    const GpuStage border = isGvs(params) ? GpuStage::kTraceGvsBorder : GpuStage::kTraceBorder;
+    const GpuStage stages[] = {GpuStage::kTraceRandom, border, GpuStage::kTraceReverse};
+    api_.prepare(std::span(stages).first(explores ? 3 : 1));
+  }
 
   void beginCell(std::span<const Face> faces, const StageParams& params) override {
     api_.write(at(StageBuffer::faces), faces.data(), faces.size_bytes());
