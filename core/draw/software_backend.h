@@ -28,6 +28,7 @@ class SoftwareBackend : public QueryBackend {
   void beginFrame(const Camera& camera) override;
   QueryId submit(std::span<const uint32_t> draws, std::span<const OcclusionQuery> queries) override;
   void submitList(uint32_t list) override;
+  /// As visible, throws std::out_of_range for a query of an older frame, or of none.
   bool arrived(QueryId query) override;
   bool visible(QueryId query) override;
   void endFrame() override;
