@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/draw/vulkan/depth_pyramid.h"
 #include "core/shared/pyramid.h"
 
 namespace sightline {
@@ -45,6 +46,9 @@ GpuCulling::GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullin
                             why));
   };
   if (const std::string why = whyNotMethod(context.abilities(), method); !why.empty()) refuse(why);
+  if (method == GpuMethod::hizMeshlets && drawing.mesh().hasSides()) {
+    refuse("the scene has triangles that only their front shows, which meshlets do not know; take hiz");
+  }
   const Drawables& drawables = drawing.mesh().drawables();
   const bool meshlets = method == GpuMethod::hizMeshlets;
   units_ = meshlets ? meshletUnits(drawing.mesh().scene(), drawables) : drawableUnits(drawables);
@@ -54,6 +58,13 @@ GpuCulling::GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullin
                        context.limits().draws));
   }
   createBuffers();
+}
+
+GpuCulling::~GpuCulling() {
+  try {
+    drawing_.ring().drain();  // what runs reads the buffers
+  } catch (const Error&) {    // a lost device runs nothing any more
+  }
 }
 
 void GpuCulling::createBuffers() {
@@ -192,6 +203,11 @@ void GpuCulling::drawOpaque(VkCommandBuffer commands, uint32_t list) {
     api.vkCmdDrawMeshTasksIndirectEXT(commands, heads_.get(), head + 4, 1, 12);
     return;
   }
+  if (drawing_.mesh().hasSides()) {
+    drawing_.programs().bind(commands, DrawKind::masked, drawing_.push());
+    api.vkCmdDrawIndirectCount(commands, draws_.get(), 0, heads_.get(), head, opaque.count, kDrawWords * 4);
+    return;
+  }
   drawing_.programs().bind(commands, DrawKind::opaque, drawing_.push());
   const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.mesh().indices();
   api.vkCmdBindIndexBuffer(commands, indices.get(), 0, VK_INDEX_TYPE_UINT32);
@@ -200,17 +216,11 @@ void GpuCulling::drawOpaque(VkCommandBuffer commands, uint32_t list) {
 }
 
 void GpuCulling::drawAll(VkCommandBuffer commands) {
-  const Range opaque = range(AlphaKind::opaque);
-  if (opaque.count == 0) return;
-  if (meshes_) return drawOpaque(commands, kAll);
-  drawing_.programs().bind(commands, DrawKind::opaque, drawing_.push());
-  const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.mesh().indices();
-  const VulkanApi& api = drawing_.context().api();
-  api.vkCmdBindIndexBuffer(commands, indices.get(), 0, VK_INDEX_TYPE_UINT32);
-  for (uint32_t i = opaque.first; i < opaque.first + opaque.count; ++i) {
-    const uvec4& run = units_.units[i].run;
-    api.vkCmdDrawIndexed(commands, 3 * run.y, 1, 3 * run.x, 0, run.z);
-  }
+  if (meshes_) drawOpaque(commands, kAll);
+}
+
+uint32_t GpuCulling::opaqueKind() const {
+  return meshes_ ? kDrawMeshlets : drawing_.mesh().hasSides() ? kDrawPlain : kDrawIndexed;
 }
 
 void GpuCulling::buildPyramid(VkCommandBuffer commands) {
@@ -219,12 +229,7 @@ void GpuCulling::buildPyramid(VkCommandBuffer commands) {
   drawing_.target().copy(drawing_.context(), commands, DrawTarget::Image::depth, pyramid_);
   drawing_.barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, kShaderStages,
                    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
-  for (uint32_t level = 0; level + 1 < pyramidLevels(width, height); level += 6) {
-    DrawPush push{pyramid_.address(), 0, {width, height, level, faults_.floor_levels ? 1u : 0u}};
-    drawing_.programs().run(commands, "pyramid.comp", push, (levelSize(width, level) + 63) / 64,
-                            (levelSize(height, level) + 63) / 64);
-    between(commands);
-  }
+  recordPyramid(drawing_, commands, pyramid_.address(), width, height, faults_.floor_levels);
 }
 
 void GpuCulling::testByBoxes(CommandRing::Entry& entry) {
@@ -252,7 +257,7 @@ void GpuCulling::testLate(CommandRing::Entry& entry) {
   test(entry.commands, range(AlphaKind::masked), kMasked, by);
   test(entry.commands, range(AlphaKind::blended), kBlended, by);
   between(entry.commands);
-  writeDraws(entry.commands, range(AlphaKind::opaque), kLate, meshes_ ? kDrawMeshlets : kDrawIndexed);
+  writeDraws(entry.commands, range(AlphaKind::opaque), kLate, opaqueKind());
   writeDraws(entry.commands, range(AlphaKind::masked), kMasked, kDrawPlain);
   writeDraws(entry.commands, range(AlphaKind::blended), kBlended, kDrawOrdered);
   between(entry.commands);
@@ -290,7 +295,7 @@ void GpuCulling::drawFrame(const Camera& camera, std::span<const uint32_t> candi
   const Range opaque = range(AlphaKind::opaque);
   test(entry.commands, opaque, kEarly, kTestBefore);
   between(entry.commands);
-  writeDraws(entry.commands, opaque, kEarly, meshes_ ? kDrawMeshlets : kDrawIndexed);
+  writeDraws(entry.commands, opaque, kEarly, opaqueKind());
   between(entry.commands);
   drawing_.ring().mark(entry, GpuPart::cull);
   drawing_.beginPass(entry);
