@@ -20,7 +20,8 @@ std::string lineOf(Function&& function) {
 }
 
 void expectParts(const std::string& line, std::initializer_list<const char*> parts) {
-  for (const char* part : parts) EXPECT_NE(line.find(part), std::string::npos) << "no \"" << part << "\": " << line;
+  for (const char* part : parts)
+    EXPECT_NE(line.find(part), std::string::npos) << "no \"" << part << "\": " << line;
   EXPECT_EQ(line.find('\n'), std::string::npos) << "one line";
 }
 
@@ -32,7 +33,8 @@ TEST(Glass, IsWhatItsLayersAddUpTo) {
   struct Pane {
     float left, right, distance;
   };
-  const std::vector<Pane> panes = {{-3, 1, 4}, {-1, 3, 6}, {-2, 2, 9}, {-2.5f, 2.5f, 5}};  // the last is the wall
+  const std::vector<Pane> panes = {
+      {-3, 1, 4}, {-1, 3, 6}, {-2, 2, 9}, {-2.5f, 2.5f, 5}};  // the last is the wall
   for (const Pane& p : panes) {
     boxes.addRectangle({p.left, -2, -p.distance}, {p.right - p.left, 0, 0}, {0, 4, 0});
     objects.push_back({"pane", uint32_t(2 * objects.size()), 2});
@@ -65,14 +67,16 @@ TEST(Glass, IsWhatItsLayersAddUpTo) {
           if (!covers(panes[size_t(pane)], -2, 2)) continue;
           if (covers(panes[3], -2, 0) && panes[size_t(pane)].distance > panes[3].distance) continue;
           const vec4 glass = glassColour(uint32_t(pane));
-          for (int k = 0; k < 3; ++k) colour[k] = glass[k] * double(glass.w) + colour[k] * (1 - double(glass.w));
+          for (int k = 0; k < 3; ++k)
+            colour[k] = glass[k] * double(glass.w) + colour[k] * (1 - double(glass.w));
           through *= 1 - double(glass.w);
           ++layers;
         }
         layered += layers > 1;
         const uint32_t pixel = picture[y * 64 + x];
         // Each layer rounds to 1/255.
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR((pixel >> 8 * k) & 255, colour[k] * 255, layers + 0.51) << what;
+        for (int k = 0; k < 3; ++k)
+          EXPECT_NEAR((pixel >> 8 * k) & 255, colour[k] * 255, layers + 0.51) << what;
         EXPECT_NEAR(pixel >> 24, through * 255, layers + 0.51) << what << " at " << x << ", " << y;
       }
     }
@@ -144,7 +148,8 @@ TEST(DrawingErrors, WhatIsTooLargeIsOneLineWithSizeAndRemedy) {
   {
     VulkanDrawing drawing("vulkan", city.scene, city.parts.drawables);
     camera.size = {100'000, 16, 0, 0};
-    expectParts(lineOf([&] { drawing.beginFrame(camera); }), {"vulkan:0", "100000 x 16", "a smaller resolution"});
+    expectParts(lineOf([&] { drawing.beginFrame(camera); }),
+                {"vulkan:0", "100000 x 16", "a smaller resolution"});
     camera.size = {16, 16, 0, 0};  // and goes on
     VulkanQueryBackend backend(drawing);
     backend.beginFrame(camera);

@@ -41,7 +41,8 @@ inline Camera cameraAt(const DrawScene& scene, const glm::dvec3& eye, const glm:
 struct City {
   Scene scene;
   DrawScene parts;
-  explicit City(uint64_t triangles = 6000, const char* name = "city") : City(generateScene(name, triangles, 1)) {}
+  explicit City(uint64_t triangles = 6000, const char* name = "city")
+      : City(generateScene(name, triangles, 1)) {}
   explicit City(Scene its) : scene(std::move(its)), parts(makeDrawScene(scene, {.split = 128})) {}
 
   /// Down a street, a turn, a cut to elsewhere, and up above all.

@@ -1,4 +1,5 @@
-// Methods that cull on the GPU show what drawing everything shows, bit by bit; and the comparison sees what they miss.
+// Methods that cull on the GPU show what drawing everything shows, bit by bit; and the comparison sees what
+// they miss.
 #include "core/shared/box_extent.h"
 #include "tests/draw_vulkan/mixed_scene.h"
 
@@ -85,8 +86,10 @@ TEST(GpuCulling, TheSameFramesGiveTheSameCounts) {
   SL_SKIP_WITHOUT_DRAWING();
   const City city;
   for (const Case& its : kCases) {
-    const auto once = replay(city, its.method, city.path(10, 97, 61), {.mesh_shaders = its.mesh_shaders}).counts;
-    const auto again = replay(city, its.method, city.path(10, 97, 61), {.mesh_shaders = its.mesh_shaders}).counts;
+    const auto once =
+        replay(city, its.method, city.path(10, 97, 61), {.mesh_shaders = its.mesh_shaders}).counts;
+    const auto again =
+        replay(city, its.method, city.path(10, 97, 61), {.mesh_shaders = its.mesh_shaders}).counts;
     EXPECT_EQ(once, again) << its.name;
   }
 }
@@ -127,7 +130,8 @@ TEST(GpuCulling, EveryHiddenBoxLiesBehindTheFullDepth) {
         const BoxExtent box = boxExtent(camera, glm::vec3(unit.low), glm::vec3(unit.high));
         if (seen[i] != 0 || box.place != kBoxAhead) continue;
         ++hidden;
-        // What drawn boxes find hidden is judged by their drawn faces; these may be as near as the extent says.
+        // What drawn boxes find hidden is judged by their drawn faces; these may be as near as the extent
+        // says.
         if (its.method == GpuMethod::boxes) continue;
         for (uint32_t y = box.pixels.y; y <= box.pixels.w; ++y) {
           for (uint32_t x = box.pixels.x; x <= box.pixels.z; ++x) {
@@ -155,7 +159,8 @@ TEST(GpuCulling, PlantedFaultsRaiseFalsePixels) {
   EXPECT_GT(falsePixels(GpuMethod::boxes, {.shrink_pixels = 1}), 0u);
 }
 
-/// A wall that hides all but the last column of pixels, at a width where each level has a last texel of its own for it.
+/// A wall that hides all but the last column of pixels, at a width where each level has a last texel of its
+/// own for it.
 TEST(GpuCulling, SeesThroughTheLastColumn) {
   SL_SKIP_WITHOUT_DRAWING();
   testing_support::SceneOfBoxes boxes;
@@ -199,7 +204,8 @@ TEST(GpuCulling, DrawsCandidatesOnly) {
   }
 }
 
-/// Every triangle of an opaque drawable is in one meshlet, whose box holds it; the words of a meshlet name the same.
+/// Every triangle of an opaque drawable is in one meshlet, whose box holds it; the words of a meshlet name
+/// the same.
 TEST(CullUnits, MeshletsHoldTheDrawablesTriangles) {
   const City city;
   const CullUnits units = meshletUnits(city.scene, city.parts.drawables);
@@ -209,7 +215,8 @@ TEST(CullUnits, MeshletsHoldTheDrawablesTriangles) {
     to[drawable].insert({t.x, t.y, t.z});
   };
   for (uint32_t d = 0; d < city.parts.drawables.list.size(); ++d) {
-    for (const uint32_t id : city.parts.drawables.trianglesOf(d)) add(expected, d, city.scene.vertexNumbers(id));
+    for (const uint32_t id : city.parts.drawables.trianglesOf(d))
+      add(expected, d, city.scene.vertexNumbers(id));
   }
   for (const CullUnit& unit : units.units) {
     const uint32_t* words = &units.words[unit.run.w];

@@ -5,7 +5,8 @@
 
 namespace sightline::drawing_cases {
 
-/// Of every five objects one of glass, one with holes; of every seven one that only its front shows, if asked for.
+/// Of every five objects one of glass, one with holes; of every seven one that only its front shows, if asked
+/// for.
 inline Scene withSurfaces(Scene scene, bool sides) {
   scene.surfaces.words.assign(scene.triangles.size(), 0);
   for (size_t o = 0; o < scene.objects.size(); ++o) {

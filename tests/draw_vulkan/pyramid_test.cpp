@@ -1,8 +1,9 @@
 // The pyramid against the least depth of all pixels that each texel covers, by brute force.
+#include "core/shared/pyramid.h"
+
 #include <cstring>
 
 #include "core/draw/vulkan/depth_pyramid.h"
-#include "core/shared/pyramid.h"
 #include "tests/draw_vulkan/drawn_city.h"
 #include "tests/support/random_triangles.h"
 
@@ -23,7 +24,8 @@ uint32_t texelsOf(uint32_t width, uint32_t height) {
 /// Builds them on the device from random depths; returns all texels.
 std::vector<float> build(VulkanDrawing& drawing, const std::vector<Pyramid>& pyramids, bool floor_levels) {
   const VulkanContext& context = drawing.context();
-  std::vector<float> texels(pyramids.back().first + texelsOf(pyramids.back().width, pyramids.back().height), -1);
+  std::vector<float> texels(pyramids.back().first + texelsOf(pyramids.back().width, pyramids.back().height),
+                            -1);
   Random random(7);
   for (const Pyramid& p : pyramids) {
     for (uint32_t i = 0; i < p.width * p.height; ++i) texels[p.first + i] = random.unit();
@@ -47,7 +49,8 @@ std::vector<float> build(VulkanDrawing& drawing, const std::vector<Pyramid>& pyr
 uint64_t wrongTexels(const Pyramid& p, const std::vector<float>& texels) {
   uint64_t wrong = 0;
   for (uint32_t level = 1; level < pyramidLevels(p.width, p.height); ++level) {
-    const uint32_t side = 1u << level, columns = (p.width + side - 1) / side, rows = (p.height + side - 1) / side;
+    const uint32_t side = 1u << level, columns = (p.width + side - 1) / side,
+                   rows = (p.height + side - 1) / side;
     const float* found = &texels[p.first + levelStart(p.width, p.height, level)];
     for (uint32_t y = 0; y < rows; ++y) {
       for (uint32_t x = 0; x < columns; ++x) {
@@ -83,7 +86,8 @@ struct Device {
   Scene scene;
   Drawables drawables;
   VulkanDrawing drawing;
-  explicit Device() : scene(oneTriangle()), drawables(partitionScene(scene)), drawing("vulkan", scene, drawables) {}
+  explicit Device()
+      : scene(oneTriangle()), drawables(partitionScene(scene)), drawing("vulkan", scene, drawables) {}
   static Scene oneTriangle() {
     testing_support::SceneOfBoxes boxes;
     boxes.addTriangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});

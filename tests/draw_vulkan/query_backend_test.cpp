@@ -41,7 +41,8 @@ TEST(VulkanQueries, EveryMethodShowsWhatDrawingEverythingShows) {
   for (const bool fixed : {true, false}) {
     for (const auto& its : draw_cases::exactMethods()) {
       const auto method = its.make(city.parts, {.fixed = fixed});
-      EXPECT_EQ(falsePixels(city, *method, city.path(12, 97, 61)), 0u) << its.name << (fixed ? " fixed" : " live");
+      EXPECT_EQ(falsePixels(city, *method, city.path(12, 97, 61)), 0u)
+          << its.name << (fixed ? " fixed" : " live");
     }
   }
   for (const auto& its : draw_cases::exactMethods()) {
@@ -49,7 +50,8 @@ TEST(VulkanQueries, EveryMethodShowsWhatDrawingEverythingShows) {
     EXPECT_EQ(falsePixels(city, *its.make(city.parts, {}), city.path(10, 160, 120)), 0u) << its.name;
     EXPECT_EQ(falsePixels(city, *its.make(city.parts, {}), city.path(6, 1, 1)), 0u) << its.name;
   }
-  EXPECT_GT(falsePixels(city, *cullLate(city.parts), city.path(24, 160, 120)), 0u) << "the comparison sees nothing";
+  EXPECT_GT(falsePixels(city, *cullLate(city.parts), city.path(24, 160, 120)), 0u)
+      << "the comparison sees nothing";
 }
 
 TEST(VulkanQueries, MethodsKnowGlassHolesAndSides) {
@@ -61,8 +63,8 @@ TEST(VulkanQueries, MethodsKnowGlassHolesAndSides) {
   }
 }
 
-/// Images are those of the processor: the same drawable at all but a few pixels (edges, depth that is nearly the same),
-/// and there the same depth but for its last digits.
+/// Images are those of the processor: the same drawable at all but a few pixels (edges, depth that is nearly
+/// the same), and there the same depth but for its last digits.
 TEST(VulkanQueries, DrawsWhatTheProcessorDraws) {
   SL_SKIP_WITHOUT_DRAWING();
   const City mixed(withSurfaces(generateScene("city", 4000, 2), true));
@@ -94,10 +96,12 @@ std::optional<double> entry(const Camera& camera, const AxisBox& box, uint32_t x
   const glm::dvec3 eye(xyz3(camera.eye)), forward(xyz3(camera.forward)), across(xyz3(camera.across)),
       down(xyz3(camera.down));
   const double a = 2 * (x + 0.5) / camera.size.x - 1, b = 2 * (y + 0.5) / camera.size.y - 1;
-  const glm::dvec3 direction = forward + across * (a / glm::dot(across, across)) + down * (b / glm::dot(down, down));
+  const glm::dvec3 direction =
+      forward + across * (a / glm::dot(across, across)) + down * (b / glm::dot(down, down));
   double first = 0, last = INFINITY;
   for (int axis = 0; axis < 3; ++axis) {
-    double near = (box.low[axis] - eye[axis]) / direction[axis], far = (box.high[axis] - eye[axis]) / direction[axis];
+    double near = (box.low[axis] - eye[axis]) / direction[axis],
+           far = (box.high[axis] - eye[axis]) / direction[axis];
     if (near > far) std::swap(near, far);
     first = std::max(first, near);
     last = std::min(last, far);
@@ -106,8 +110,8 @@ std::optional<double> entry(const Camera& camera, const AxisBox& box, uint32_t x
   return first;
 }
 
-/// Answers against rays through all pixels, where these leave no doubt: by a box a little smaller and nearer, and by one
-/// a little larger and farther.
+/// Answers against rays through all pixels, where these leave no doubt: by a box a little smaller and nearer,
+/// and by one a little larger and farther.
 TEST(VulkanQueries, AnswersAreWhatRaysSay) {
   SL_SKIP_WITHOUT_DRAWING();
   const City city;
@@ -128,7 +132,8 @@ TEST(VulkanQueries, AnswersAreWhatRaysSay) {
       const AxisBox box{middle - half, middle + half};
       bool ahead = true;
       for (int c = 0; c < 8; ++c) {
-        const glm::vec3 p(c & 1 ? box.low.x : box.high.x, c & 2 ? box.low.y : box.high.y, c & 4 ? box.low.z : box.high.z);
+        const glm::vec3 p(c & 1 ? box.low.x : box.high.x, c & 2 ? box.low.y : box.high.y,
+                          c & 4 ? box.low.z : box.high.z);
         ahead = ahead && clipPosition(camera, p).w > 0.5f;
       }
       if (ahead) boxes.push_back(box);
@@ -165,7 +170,8 @@ TEST(VulkanQueries, AnswersAreWhatRaysSay) {
   EXPECT_GT(hidden, 100u);
 }
 
-/// Many submits in a frame, answers of the frame before, and of submits whose command buffers were used again since.
+/// Many submits in a frame, answers of the frame before, and of submits whose command buffers were used again
+/// since.
 TEST(VulkanQueries, AnswersOutliveTheirCommandBuffers) {
   SL_SKIP_WITHOUT_DRAWING();
   testing_support::SceneOfBoxes made;

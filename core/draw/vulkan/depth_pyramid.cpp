@@ -18,7 +18,8 @@ void recordPyramid(VulkanDrawing& drawing, VkCommandBuffer commands, VkDeviceAdd
                            (levelSize(width, level) + kTexelsOfGroup - 1) / kTexelsOfGroup,
                            (levelSize(height, level) + kTexelsOfGroup - 1) / kTexelsOfGroup);
     drawing.barrier(commands, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
-                    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+                    VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
   }
 }
 

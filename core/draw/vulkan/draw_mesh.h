@@ -23,7 +23,8 @@ class DrawMesh {
   const Scene& scene() const { return scene_; }
   const Drawables& drawables() const { return drawables_; }
   bool hasGlass() const { return has_glass_; }
-  /// Whether opaque drawables too are drawn vertex by vertex, for the sake of triangles that only their front shows.
+  /// Whether opaque drawables too are drawn vertex by vertex, for the sake of triangles that only their front
+  /// shows.
   bool hasSides() const { return has_sides_; }
   SlotRun run(uint32_t drawable) const;
   /// Of a list: at most one run of each kind, in the order of kinds.

@@ -12,8 +12,8 @@
 namespace sightline {
 namespace {
 
-// Lists: opaque units in both passes, masked and blended ones; and all opaque units.
-constexpr uint32_t kEarly = 0, kLate = 1, kMasked = 2, kBlended = 3, kAll = 4, kLists = 5;
+// Lists: opaque units in both passes, masked and blended ones; and all opaque units, and all blended ones.
+constexpr uint32_t kEarly = 0, kLate = 1, kMasked = 2, kBlended = 3, kAll = 4, kAllBlended = 5, kLists = 6;
 constexpr uint64_t kHeadBytes = uint64_t(kLists) * kHeadWords * 4;
 constexpr uint32_t kUnitBoxVertices = 14;  // of vk_shaders/box.vert
 constexpr uint64_t kUpdateBytes = 65536;   // of vkCmdUpdateBuffer
@@ -90,6 +90,7 @@ void GpuCulling::createBuffers() {
   head[1] = std::min(all, kMeshletRow);
   head[2] = (all + kMeshletRow - 1) / kMeshletRow;
   head[3] = 1;
+  heads[kAllBlended * kHeadWords] = range(AlphaKind::blended).count;
   upload.write(heads_, heads.data(), kHeadBytes);
   upload.write(unit_buffer_, units_.units.data(), units_.units.size() * sizeof(CullUnit));
   if (method_ == GpuMethod::hizMeshlets) {
@@ -277,8 +278,10 @@ void GpuCulling::drawLate(CommandRing::Entry& entry) {
   }
   if (blended.count > 0) {
     drawing_.programs().bind(entry.commands, DrawKind::glass, drawing_.push());
-    api.vkCmdDrawIndirect(entry.commands, draws_.get(), uint64_t(blended.first) * kStride, blended.count,
-                          kStride);
+    // Their number is known; but lavapipe (Mesa 25.0.7), told by no buffer, takes it from the last draw's
+    // buffer.
+    api.vkCmdDrawIndirectCount(entry.commands, draws_.get(), uint64_t(blended.first) * kStride, heads_.get(),
+                               uint64_t(kAllBlended) * kHeadWords * 4, blended.count, kStride);
   }
   drawing_.endPass(entry);
   drawing_.ring().mark(entry, GpuPart::draw);

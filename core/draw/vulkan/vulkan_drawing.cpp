@@ -82,7 +82,8 @@ void VulkanDrawing::draw(VkCommandBuffer commands, const SlotRun& run, uint32_t 
                    : run.kind == AlphaKind::blended ? DrawKind::glass
                                                     : DrawKind::masked,
                    push());
-    if (indexed) context_.api().vkCmdBindIndexBuffer(commands, mesh_.indices().get(), 0, VK_INDEX_TYPE_UINT32);
+    if (indexed)
+      context_.api().vkCmdBindIndexBuffer(commands, mesh_.indices().get(), 0, VK_INDEX_TYPE_UINT32);
   }
   if (indexed) {
     context_.api().vkCmdDrawIndexed(commands, 3 * run.count, 1, 3 * run.first, 0, drawable);
