@@ -302,6 +302,22 @@ TEST(SoftwareImage, OrderDoesNotChangeDepth) {
   EXPECT_GT(std::ranges::count_if(forth.depth(), [](float d) { return d > 0; }), 1000);
 }
 
+TEST(SoftwareImage, BoxesAsNearAsWhatIsThereAreSeen) {
+  draw_cases::ObjectScene objects;
+  objects.rectangle({-9, -9, -5}, {18, 0, 0}, {0, 18, 0});
+  const Scene scene = objects.finish();
+  SoftwareImage image(scene);
+  image.begin(makeCamera(lookAt({0, 0, 0}, {0, 0, -1}, 60, 31, 17), 31, 17, 0.01f));
+  EXPECT_TRUE(image.seesBox({{-1, -1, -9}, {1, 1, -8}}));
+  EXPECT_FALSE(image.seesBox({{90, -1, -9}, {91, 1, -8}}));  // beside the image
+  EXPECT_TRUE(image.draw(0));
+  EXPECT_FALSE(image.draw(0));  // as near is not nearer
+  EXPECT_TRUE(image.draw(1));
+  EXPECT_TRUE(image.seesBox({{-1, -1, -9}, {1, 1, -5}}));
+  EXPECT_TRUE(image.seesBox({{-1, -1, -5}, {1, 1, -5}}));
+  EXPECT_FALSE(image.seesBox({{-1, -1, -9}, {1, 1, -5.0001f}}));
+}
+
 TEST(NodeQueue, NearestFirstThenLowestNumber) {
   std::vector<AxisBox> boxes;
   for (int i = 0; i < 40; ++i)
