@@ -30,6 +30,13 @@ class Sights {
     return {first, last};
   }
 
+  /// Its triangles alone.
+  std::vector<uint32_t> glassIds(size_t ray) const {
+    std::vector<uint32_t> ids;
+    for (const SeenThrough& seen : glass(ray)) ids.push_back(seen.triangle);
+    return ids;
+  }
+
   /// Calls see(triangle) for each triangle that a ray sees, once; what ends it is the last.
   template <typename See>
   void visit(size_t ray, See&& see) const {
