@@ -26,6 +26,7 @@
 #include "core/pvs/cell_summary.h"
 #include "core/pvs/missing_bound.h"
 #include "core/pvs/pvs_writer.h"
+#include "core/strip/aimed_rays.h"
 #include "core/strip/lost_rays.h"
 #include "core/strip/strip_scene.h"
 
@@ -38,11 +39,16 @@ struct StripArguments {
   StripOptions strip;
   SceneLoadOptions load;
   uint32_t rays = 0, check_rays = 1'000'000;  ///< of each cell
+  uint32_t aimed = 500;                       ///< of each cell at each triangle
+  bool tight = false;
   std::string device = "opencl";
   DeviceOptions device_options;
   bool spatial_splits = false;
   BakeParams params;
 };
+
+/// Rounds of aimed rays at most.
+constexpr uint32_t kMostRounds = 64;
 
 bool isSets(const std::filesystem::path& from) {
   const std::string extension = lowerExtension(from);
@@ -169,6 +175,34 @@ void addSeen(const StripArguments& arguments, const PvsFile& pvs, Session& sessi
              counted(added, "triangle"));
 }
 
+/// What rays see that are aimed at what would go, and what borders on all that: again, until such rays find
+/// nothing.
+void addAimed(const StripArguments& arguments, const PvsFile& pvs, Session& session,
+              std::vector<bool>& seen) {
+  uint64_t margin = arguments.tight ? 0 : markNeighbours(session.scene(), seen);
+  uint64_t added = 0, last = arguments.aimed > 0 ? 1 : 0;
+  uint32_t rounds = 0;
+  TraceStatus status("aimed rays", pvs.cells.size());
+  while (last > 0 && rounds < kMostRounds && !status.stopped()) {
+    last = 0;
+    for (uint32_t i = 0; i < pvs.cells.size() && !status.stopped(); ++i) {
+      last += markAimed({session.scene(), session.parts().tracer()}, pvs.cells[i].cell, i,
+                        arguments.params.seed, rounds, arguments.aimed, seen, status.of(i));
+    }
+    ++rounds;
+    added += last;
+    if (last > 0 && !arguments.tight) margin += markNeighbours(session.scene(), seen);
+  }
+  status.end();
+  if (rounds > 0) {
+    fmt::print(
+        "aimed: {} of {} rays of each cell at each triangle that would go meet {} of those, the last {}\n",
+        counted(rounds, "round"), arguments.aimed, added, last == 0 ? "none" : std::to_string(last));
+  }
+  if (!arguments.tight)
+    fmt::print("margin: {} that share an edge with what is seen\n", counted(margin, "triangle"));
+}
+
 /// Reads the output back, and traces fresh rays in both scenes.
 void check(const StripArguments& arguments, const PvsFile& pvs, Session& session) {
   if (arguments.check_rays == 0) return;
@@ -215,6 +249,7 @@ void runStrip(const StripArguments& arguments) {
   sayPromise(pvs);
   std::vector<bool> seen = seenOf(pvs);
   addSeen(arguments, pvs, session, seen);
+  addAimed(arguments, pvs, session, seen);
   StripOptions options = arguments.strip;
   options.ignored_extensions = arguments.load.ignored_extensions;
   options.allow_external = arguments.load.allow_external;
@@ -225,9 +260,10 @@ void runStrip(const StripArguments& arguments) {
 constexpr const char* kStripFooter =
     "The output is the scene file itself, without the triangles that are seen from no\n"
     "cell; its folder must hold what the scene names beside it. --from outside: from\n"
-    "anywhere outside of the scene's bounds. A triangle that no ray met goes: what a\n"
-    "cell is said to miss, and the last line, is the promise; more rays (--rays,\n"
-    "--n-rand, a lower --threshold) tighten it.\n\n"
+    "anywhere outside of the scene's bounds. A triangle goes if no ray met it, nor any\n"
+    "that shares an edge with it (--tight: if no ray met it). What a cell is said to\n"
+    "miss, and the last line, is the promise; more rays (--aimed, --rays, --n-rand, a\n"
+    "lower --threshold) tighten it.\n\n"
     "Examples:\n"
     "  sightline strip car.glb -o shell.glb\n"
     "  sightline strip level.glb -o walked.glb --from cells.json --compact\n"
@@ -259,6 +295,16 @@ void addStripCommand(CLI::App& app) {
       ->transform(wholeNumber(0, 1u << 30))
       ->type_name("N")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--aimed", a->aimed,
+          "rays of each cell at each triangle that would go, in rounds until one finds nothing; what they "
+          "meet stays; 0: none")
+      ->transform(wholeNumber(0, 1u << 20))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--tight", a->tight,
+                    "drop triangles that share an edge with one that is seen, if no ray meets them");
   command
       ->add_option(
           "--check-rays", a->check_rays,

@@ -76,7 +76,8 @@ void print(const RayAnswers& answers, const std::vector<std::string>& devices) {
   for (size_t d = 0; d < devices.size(); ++d) {
     const Ruling& ruling = answers.rulings[d];
     fmt::print(
-        "{:<{}}  {}: {}{}\n", devices[d], width, answerText(answers.hits[d], answers.glass[d]), verdictName(ruling.verdict),
+        "{:<{}}  {}: {}{}\n", devices[d], width, answerText(answers.hits[d], answers.glass[d]),
+        verdictName(ruling.verdict),
         ruling.steps_beside > 0 ? fmt::format(", {:.2g} float steps beside it", ruling.steps_beside) : "");
   }
   if (!answers.legal()) {

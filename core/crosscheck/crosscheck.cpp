@@ -169,7 +169,8 @@ class Crosscheck {
     judged.judged = options_.check_every > 0 && (first + i) % options_.check_every == 0;
     for (size_t d = 0; d < devices_.size(); ++d) {
       const Hit& its = hit(i, d);
-      if (its.triangle != reference.triangle || !seesGlassAsFirst(i, d)) judged.disputed = judged.judged = true;
+      if (its.triangle != reference.triangle || !seesGlassAsFirst(i, d))
+        judged.disputed = judged.judged = true;
       const bool past = its.triangle == kNoTriangle || !(its.t <= kSuspiciousDistance);
       if (isAimed(kind) && past) judged.judged = true;
       if (its.triangle != kNoTriangle) opinion(i, d).ulps = ulpsOff(judge_, ray, its);
@@ -180,8 +181,7 @@ class Crosscheck {
       Opinion& its = opinion(i, d);
       its.difference = differenceOf(judge_, ray, reference, hit(i, d), options_.rounding);
       if (its.difference == Difference::kSame && !seesGlassAsFirst(i, d)) its.difference = Difference::kGlass;
-      its.ruling =
-          ruleSight(judge_, ray, hit(i, d), sights_[d].glassIds(i), judged.exact, options_.rounding);
+      its.ruling = ruleSight(judge_, ray, hit(i, d), sights_[d].glassIds(i), judged.exact, options_.rounding);
     }
   }
 

@@ -146,8 +146,8 @@ std::string crosscheckTable(const CrosscheckReport& report) {
   for (const DeviceInfo& device : report.devices) width = std::max(width, device.id.size());
   std::string table = fmt::format(
       "{:<10}  {:>9}  {:<{}}  {:>8} {:>8} {:>8} {:>8}{}  {:>8} {:>8} {:>8} {:>8} {:>8}  {:>7} {:>8} {:>8}\n",
-      "kind", "rays", "device", width, "tie", "edge", "one miss", "other", report.glass ? "    glass" : "", "judged", "right", "rounded",
-      "missed", "wrong", "ulps 50", "99 %", "max");
+      "kind", "rays", "device", width, "tie", "edge", "one miss", "other", report.glass ? "    glass" : "",
+      "judged", "right", "rounded", "missed", "wrong", "ulps 50", "99 %", "max");
   for (const KindReport& kind : report.kinds) {
     for (size_t d = 0; d < report.devices.size(); ++d) {
       const DeviceTally& t = kind.devices[d];

@@ -88,9 +88,10 @@ std::string answerText(const Hit& hit, std::span<const uint32_t> glass) {
 
 std::string exactText(const ExactHit& exact, std::span<const uint32_t> glass) {
   if (exact.missed()) return "nothing" + glassText(glass);
-  return fmt::format("triangle {}{} at {:.9g}{}", exact.triangles.front(),
-                     exact.triangles.size() > 1 ? fmt::format(" and {} more", exact.triangles.size() - 1) : "",
-                     exact.t.low, glassText(glass));
+  return fmt::format(
+      "triangle {}{} at {:.9g}{}", exact.triangles.front(),
+      exact.triangles.size() > 1 ? fmt::format(" and {} more", exact.triangles.size() - 1) : "", exact.t.low,
+      glassText(glass));
 }
 
 std::string hexText(const vec3& v) {

@@ -12,7 +12,7 @@ namespace sightline {
 /// A ray with what several devices and the judge say to it.
 struct RayAnswers {
   Ray ray{};
-  std::vector<Hit> hits;  ///< by device: what ends the ray
+  std::vector<Hit> hits;                     ///< by device: what ends the ray
   std::vector<std::vector<uint32_t>> glass;  ///< by device: what it sees before that, ascending
   std::vector<Ruling> rulings;               ///< by device: on both
   ExactHit exact;
@@ -30,8 +30,8 @@ struct RayAnswers {
 RayAnswers askAll(const Judge& judge, const Ray& ray, std::span<Tracer* const> devices,
                   const RoundingLimit& limit = {});
 
-/// Adds "origin", "direction", "exact_triangles", "exact_t" and "answers"; where anyone sees glass, "exact_glass" and
-/// "glass" of each answer, too. devices: their ids.
+/// Adds "origin", "direction", "exact_triangles", "exact_t" and "answers"; where anyone sees glass,
+/// "exact_glass" and "glass" of each answer, too. devices: their ids.
 void addAnswers(Json& json, const RayAnswers& answers, std::span<const std::string> devices);
 /// "answers" alone: device, triangle, t, verdict, steps_beside.
 Json answersJson(std::span<const Hit> hits, std::span<const Ruling> rulings,

@@ -90,8 +90,8 @@ class Neighbourhood {
   double reach_ = 0, farthest_ = 0, steps_ = 0;
 };
 
-/// The scene of some of the triangles, with the vertices that they use, and what of them is glass: all that the file
-/// of a reproducer can say of surfaces.
+/// The scene of some of the triangles, with the vertices that they use, and what of them is glass: all that
+/// the file of a reproducer can say of surfaces.
 Scene partOf(const Scene& scene, std::span<const uint32_t> triangles) {
   Scene part;
   std::map<uint32_t, uint32_t> places;  // of vertices

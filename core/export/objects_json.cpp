@@ -62,7 +62,8 @@ ObjectHits countObjectHits(Tracer& tracer, const Scene& scene, const ViewCell& c
   ObjectHits result{0, std::vector<uint64_t>(scene.objects.size(), 0)};
   std::vector<Ray> batch(std::min(rays, kHitChunk));
   Sights sights;
-  std::vector<uint64_t> last(scene.objects.size(), 0);  // by object: number of the last ray that saw it, from 1
+  std::vector<uint64_t> last(scene.objects.size(),
+                             0);  // by object: number of the last ray that saw it, from 1
   for (uint32_t first = 0; first < rays; first += kHitChunk) {
     const uint32_t count = std::min(rays - first, kHitChunk);
     tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });

@@ -33,10 +33,11 @@ void requireMethodOn(Method method, const std::string& device) {
 void requireDrawable(Method method, const Scene& scene) {
   if (method != Method::kRaster || scene.surfaces.empty()) return;
   const SurfaceCounts counts = countSurfaces(scene.surfaces);
-  throw Error(fmt::format("the method raster draws every triangle as opaque from both sides; of this scene {} have "
-                          "holes, {} are glass, {} have no back: use another method",
-                          counts.masked, counts.glass, counts.front_only),
-              kExitUsage);
+  throw Error(
+      fmt::format("the method raster draws every triangle as opaque from both sides; of this scene {} have "
+                  "holes, {} are glass, {} have no back: use another method",
+                  counts.masked, counts.glass, counts.front_only),
+      kExitUsage);
 }
 
 }  // namespace sightline

@@ -19,8 +19,8 @@ struct TracedScene {
 using RayProgress = std::function<bool(uint64_t rays)>;
 
 /// Marks in `seen` (by id) what `rays` random rays of the cell, 1 .. 2^30, see: what ends them, and all glass
-/// before that. They are others than those of a bake with this seed and cell index. Returns how many triangles were not marked before. Throws
-/// Error.
+/// before that. They are others than those of a bake with this seed and cell index. Returns how many
+/// triangles were not marked before. Throws Error.
 uint64_t markSeen(const TracedScene& scene, const ViewCell& cell, uint32_t cell_index, uint64_t seed,
                   uint32_t rays, std::vector<bool>& seen, const RayProgress& progress = {});
 

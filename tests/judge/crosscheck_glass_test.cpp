@@ -129,7 +129,8 @@ uint64_t glassDifferences(const CrosscheckReport& report) {
   for (const KindReport& kind : report.kinds) {
     const auto& differences = kind.devices[1].differences;
     sum += differences[size_t(Difference::kGlass)];
-    for (const Difference other : {Difference::kTie, Difference::kEdge, Difference::kMissed, Difference::kWrong}) {
+    for (const Difference other :
+         {Difference::kTie, Difference::kEdge, Difference::kMissed, Difference::kWrong}) {
       EXPECT_EQ(differences[size_t(other)], 0u);
     }
   }
@@ -181,7 +182,9 @@ TEST(GlassCrosscheck, FindsEachPaneThatIsLost) {
   EXPECT_GE(sumOf(report, 1, Verdict::kMissed) + 2, rays);
   EXPECT_EQ(sumOf(report, 1, Verdict::kWrong), 0u);
   EXPECT_EQ(sumOf(report, 0, Verdict::kMissed) + sumOf(report, 0, Verdict::kWrong), 0u);
-  EXPECT_EQ(pastLimits(report, {.missed = 0}).size(), 1u);
+  CrosscheckLimits limits;
+  limits.missed = 0;
+  EXPECT_EQ(pastLimits(report, limits).size(), 1u);
 }
 
 TEST(GlassCrosscheck, FindsPanesThatAreNotMetOrBehindWhatEndsTheRay) {

@@ -1,5 +1,5 @@
-// What strip marks and counts, and what objects take of the view, in scenes with glass: against brute force in
-// double, both ways.
+// What strip marks and counts, and what objects take of the view, in scenes with glass: against brute force
+// in double, both ways.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -31,7 +31,8 @@ Scene panesAround(uint32_t seed) {
                                  center + random.point(4.0f));
     scene.surfaces.words.push_back(random.pick(3) != 0 ? kSurfaceGlass : 0u);
   }
-  for (uint32_t o = 0; o < 4; ++o) scene.objects.push_back({"o" + std::to_string(o), o * kCount / 4, kCount / 4});
+  for (uint32_t o = 0; o < 4; ++o)
+    scene.objects.push_back({"o" + std::to_string(o), o * kCount / 4, kCount / 4});
   return scene;
 }
 

@@ -29,7 +29,8 @@ inline BruteSight bruteSight(const Scene& scene, const Ray& ray) {
   const glm::dvec3 o(ray.origin), d(ray.direction);
   for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
     const auto corners = scene.corners(id);
-    const glm::dvec3 a = glm::dvec3(corners[0]) - o, b = glm::dvec3(corners[1]) - o, c = glm::dvec3(corners[2]) - o;
+    const glm::dvec3 a = glm::dvec3(corners[0]) - o, b = glm::dvec3(corners[1]) - o,
+                     c = glm::dvec3(corners[2]) - o;
     const double u = glm::dot(d, glm::cross(b, c)), v = glm::dot(d, glm::cross(c, a)),
                  w = glm::dot(d, glm::cross(a, b)), det = u + v + w;
     if (det == 0) continue;
