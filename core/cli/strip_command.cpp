@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -175,32 +176,43 @@ void addSeen(const StripArguments& arguments, const PvsFile& pvs, Session& sessi
              counted(added, "triangle"));
 }
 
-/// What rays see that are aimed at what would go, and what borders on all that: again, until such rays find
-/// nothing.
-void addAimed(const StripArguments& arguments, const PvsFile& pvs, Session& session,
-              std::vector<bool>& seen) {
-  uint64_t margin = arguments.tight ? 0 : markNeighbours(session.scene(), seen);
-  uint64_t added = 0, last = arguments.aimed > 0 ? 1 : 0;
-  uint32_t rounds = 0;
+uint64_t countOf(const std::vector<bool>& marked) {
+  return uint64_t(std::count(marked.begin(), marked.end(), true));
+}
+
+/// What stays: what is seen and what borders on it, also by rays that are aimed at what else would go, again
+/// and again until they find nothing.
+std::vector<bool> keptOf(const StripArguments& arguments, const PvsFile& pvs, Session& session,
+                         std::vector<bool> seen) {
+  const auto keep = [&] { return arguments.tight ? seen : withNeighbours(session.scene(), seen); };
+  std::vector<bool> kept = keep();
+  const uint64_t before = countOf(seen);
+  uint64_t last = arguments.aimed > 0 ? 1 : 0;
+  AimedRays aimed{.seed = arguments.params.seed, .each = arguments.aimed};
   TraceStatus status("aimed rays", pvs.cells.size());
-  while (last > 0 && rounds < kMostRounds && !status.stopped()) {
+  for (; last > 0 && aimed.round < kMostRounds && !status.stopped(); ++aimed.round) {
     last = 0;
     for (uint32_t i = 0; i < pvs.cells.size() && !status.stopped(); ++i) {
-      last += markAimed({session.scene(), session.parts().tracer()}, pvs.cells[i].cell, i,
-                        arguments.params.seed, rounds, arguments.aimed, seen, status.of(i));
+      aimed.cell_index = i;
+      last += markAimed({session.scene(), session.parts().tracer()}, pvs.cells[i].cell, aimed, kept, seen,
+                        status.of(i));
     }
-    ++rounds;
-    added += last;
-    if (last > 0 && !arguments.tight) margin += markNeighbours(session.scene(), seen);
+    kept = keep();
   }
   status.end();
-  if (rounds > 0) {
+  if (aimed.round > 0) {
     fmt::print(
-        "aimed: {} of {} rays of each cell at each triangle that would go meet {} of those, the last {}\n",
-        counted(rounds, "round"), arguments.aimed, added, last == 0 ? "none" : std::to_string(last));
+        "aimed: {} of {} rays of each cell at each triangle that would go meet {} that the sets lack; the "
+        "last "
+        "{}\n",
+        counted(aimed.round, "round"), arguments.aimed, counted(countOf(seen) - before, "triangle"),
+        last == 0 ? "none that goes" : fmt::format("{} that would go", last));
   }
-  if (!arguments.tight)
-    fmt::print("margin: {} that share an edge with what is seen\n", counted(margin, "triangle"));
+  if (!arguments.tight) {
+    fmt::print("margin: {} stay because they share an edge with one that is seen\n",
+               counted(countOf(kept) - countOf(seen), "triangle"));
+  }
+  return kept;
 }
 
 /// Reads the output back, and traces fresh rays in both scenes.
@@ -249,7 +261,7 @@ void runStrip(const StripArguments& arguments) {
   sayPromise(pvs);
   std::vector<bool> seen = seenOf(pvs);
   addSeen(arguments, pvs, session, seen);
-  addAimed(arguments, pvs, session, seen);
+  seen = keptOf(arguments, pvs, session, std::move(seen));
   StripOptions options = arguments.strip;
   options.ignored_extensions = arguments.load.ignored_extensions;
   options.allow_external = arguments.load.allow_external;

@@ -52,8 +52,9 @@ glm::dvec3 directionOf(RayRandom& random) {
 /// Makes the rays of a cell that are aimed at triangles.
 class Aim {
  public:
-  Aim(const ViewCell& cell, uint32_t cell_index, uint64_t seed, uint32_t round, uint32_t rays_each)
-      : key_(splitmix(seed) ^ splitmix((uint64_t(round) << 32 | cell_index) + 1)), rays_each_(rays_each) {
+  Aim(const ViewCell& cell, const AimedRays& aimed)
+      : key_(splitmix(aimed.seed) ^ splitmix((uint64_t(aimed.round) << 32 | aimed.cell_index) + 1)),
+        rays_each_(aimed.each) {
     for (const Face& face : cellFaces(cell)) {
       const glm::dvec3 u(face.edge_u), v(face.edge_v);
       faces_.push_back(
@@ -134,27 +135,27 @@ std::array<uint64_t, 3> edgesOf(const std::array<glm::vec3, 3>& corners) {
 
 }  // namespace
 
-uint64_t markAimed(const TracedScene& scene, const ViewCell& cell, uint32_t cell_index, uint64_t seed,
-                   uint32_t round, uint32_t rays_each, std::vector<bool>& seen, const RayProgress& progress) {
+uint64_t markAimed(const TracedScene& scene, const ViewCell& cell, const AimedRays& aimed,
+                   const std::vector<bool>& kept, std::vector<bool>& seen, const RayProgress& progress) {
   std::vector<uint32_t> targets;
-  for (uint32_t id = 0; id < seen.size(); ++id) {
-    if (!seen[id]) targets.push_back(id);
+  for (uint32_t id = 0; id < kept.size(); ++id) {
+    if (!kept[id]) targets.push_back(id);
   }
-  const Aim aim(cell, cell_index, seed, round, rays_each);
-  const uint64_t rays = targets.size() * uint64_t(rays_each);
+  const Aim aim(cell, aimed);
+  const uint64_t rays = targets.size() * uint64_t(aimed.each);
   std::vector<Ray> batch(std::min(rays, kAimedChunk));
   Sights sights;
   uint64_t marked = 0;
   for (uint64_t first = 0; first < rays; first += kAimedChunk) {
     const auto count = uint32_t(std::min(rays - first, kAimedChunk));
     tbb::parallel_for(0u, count, [&](uint32_t i) {
-      const uint32_t id = targets[(first + i) / rays_each];
-      batch[i] = aim.at(scene.scene.corners(id), id, uint32_t((first + i) % rays_each));
+      const uint32_t id = targets[(first + i) / aimed.each];
+      batch[i] = aim.at(scene.scene.corners(id), id, uint32_t((first + i) % aimed.each));
     });
     sights.trace(scene.tracer, std::span(batch).first(count));
     for (uint32_t i = 0; i < count; ++i) {
       sights.visit(i, [&](uint32_t id) {
-        marked += seen[id] ? 0 : 1;
+        marked += seen[id] || kept[id] ? 0 : 1;
         seen[id] = true;
       });
     }
@@ -163,7 +164,7 @@ uint64_t markAimed(const TracedScene& scene, const ViewCell& cell, uint32_t cell
   return marked;
 }
 
-uint64_t markNeighbours(const Scene& scene, std::vector<bool>& seen) {
+std::vector<bool> withNeighbours(const Scene& scene, const std::vector<bool>& seen) {
   std::vector<uint64_t> edges;
   scene.visitTriangles(0, scene.triangleCount(), [&](uint32_t id, const std::array<glm::vec3, 3>& corners) {
     if (!seen[id]) return;
@@ -172,16 +173,15 @@ uint64_t markNeighbours(const Scene& scene, std::vector<bool>& seen) {
   });
   tbb::parallel_sort(edges);
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-  uint64_t marked = 0;
+  std::vector<bool> kept = seen;
   scene.visitTriangles(0, scene.triangleCount(), [&](uint32_t id, const std::array<glm::vec3, 3>& corners) {
     if (seen[id]) return;
     const auto its = edgesOf(corners);
-    const auto borders = [&](uint64_t edge) { return std::binary_search(edges.begin(), edges.end(), edge); };
-    if (std::none_of(its.begin(), its.end(), borders)) return;
-    seen[id] = true;
-    ++marked;
+    kept[id] = std::any_of(its.begin(), its.end(), [&](uint64_t edge) {
+      return std::binary_search(edges.begin(), edges.end(), edge);
+    });
   });
-  return marked;
+  return kept;
 }
 
 }  // namespace sightline

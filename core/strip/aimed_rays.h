@@ -6,25 +6,31 @@
 
 namespace sightline {
 
-/// Aims rays of the cell at the triangles that `seen` (by id) does not mark, and marks what they see,
-/// whatever they were aimed at. Random rays rarely meet what is small, and this is where they would be lost:
-/// aimed ones meet a triangle as often as it is open to the cell, whatever its size.
+/// Which rays are aimed. All are decided by these, the triangle's id and their number: rounds have rays of
+/// their own.
+struct AimedRays {
+  uint32_t cell_index = 0;
+  uint64_t seed = 0;
+  uint32_t round = 0;
+  uint32_t each = 1;  ///< numbers of rays for each triangle, 1 .. 2^20
+};
+
+/// Aims rays of the cell at the triangles that `kept` (by id) does not mark, and marks in `seen` what they
+/// see, whatever they were aimed at. Random rays rarely meet what is small, and this is where they would be
+/// lost: aimed ones meet a triangle as often as it is open to the cell, whatever its size.
 ///
-/// rays_each: numbers of rays for each triangle, 1 .. 2^20. Most go the way that light leaves the triangle at
-/// a random point of it, to either side, back from where that meets the cell's surface; where it does not,
-/// there is no such ray. One in kAimedAtCell goes from a random point of the cell's surface: small cells are
-/// met by few others. All are decided by seed, cell index, round and id: rounds have rays of their own.
-/// Degenerate triangles get none. Returns how many triangles were not marked before. Where progress (told of
-/// numbers of rays) ends it early, the rest gets none. Throws Error.
-uint64_t markAimed(const TracedScene& scene, const ViewCell& cell, uint32_t cell_index, uint64_t seed,
-                   uint32_t round, uint32_t rays_each, std::vector<bool>& seen,
-                   const RayProgress& progress = {});
+/// Most go the way that light leaves the triangle at a random point of it, to either side, back from where
+/// that meets the cell's surface; where it does not, there is no such ray. One in kAimedAtCell goes from a
+/// random point of the cell's surface: small cells are met by few others. Degenerate triangles get none.
+/// Returns how many triangles came to be seen that are not kept. Where progress (told of numbers of rays)
+/// ends it early, the rest gets none. Throws Error.
+uint64_t markAimed(const TracedScene& scene, const ViewCell& cell, const AimedRays& aimed,
+                   const std::vector<bool>& kept, std::vector<bool>& seen, const RayProgress& progress = {});
 
 inline constexpr uint32_t kAimedAtCell = 8;
 
-/// Marks the triangles that share an edge with one that is marked, by where its ends are. Returns how many
-/// were not marked before: what lies beyond the border of what rays have seen, and may be seen by what no ray
-/// passed.
-uint64_t markNeighbours(const Scene& scene, std::vector<bool>& seen);
+/// The triangles that `seen` marks and those that share an edge with one of them, by where its ends are: what
+/// lies beyond the border of what rays have seen may be seen where no ray passed.
+std::vector<bool> withNeighbours(const Scene& scene, const std::vector<bool>& seen);
 
 }  // namespace sightline

@@ -78,8 +78,8 @@ TEST(StripCommand, TakesCellsOrABakeOfThem) {
   // Each of the core's other sides borders on one of these, by one of its two triangles or by both.
   const std::string wide = std::string(kQuick).substr(0, std::string(kQuick).find(" --tight"));
   expectRun("strip " + scene + " -o " + (files / "e.glb") + " --from " + pvs + wide, 0,
-            {" of 500 rays of each cell at each triangle that would go meet ", ", the last none",
-             "that share an edge with what is seen"});
+            {" of 500 rays of each cell at each triangle that would go meet ", "; the last none that goes",
+             " stay because they share an edge with one that is seen"});
   const uint32_t margin = loadScene(files / "e.glb").objects[1].triangle_count;
   EXPECT_GT(margin, 7u);
   EXPECT_LT(margin, 12u);
