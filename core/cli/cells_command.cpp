@@ -3,12 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <optional>
-#include <sstream>
 
 #include "core/bake/status_line.h"
 #include "core/base/error.h"
@@ -18,10 +15,12 @@
 #include "core/cli/free_side_option.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
+#include "core/cli/points.h"
 #include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
+#include "core/formats/walk_file.h"
 #include "core/gvs/bake_cell.h"
 #include "core/io/file_io.h"
 #include "core/place/clear_box.h"
@@ -41,6 +40,7 @@ struct CellsArguments {
   std::vector<uint64_t> count;
   GridOptions grid_options;
   std::vector<std::string> path;
+  std::filesystem::path walk;
   PathOptions path_options;
   std::optional<double> margin;
 };
@@ -48,59 +48,10 @@ struct CellsArguments {
 /// So many cells are named one by one that were left out.
 constexpr size_t kNamedCells = 10;
 
-/// Numbers with commas between them. `what` and `where` start the error's line.
-std::vector<double> parseNumbers(const std::string& text, const std::string& where) {
-  std::vector<double> numbers;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (true) {
-    double value = 0;
-    const auto [next, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !std::isfinite(value)) break;
-    numbers.push_back(value);
-    if (next == end) return numbers;
-    if (*next != ',') break;
-    at = next + 1;
-  }
-  throw Error(where + ": '" + text + "' is not numbers with commas between them, as in 1.5,0,-20",
-              kExitUsage);
-}
-
-glm::dvec3 parsePoint(const std::string& text, const std::string& where) {
-  const std::vector<double> numbers = parseNumbers(text, where);
-  if (numbers.size() != 3) {
-    throw Error(where + ": '" + text + "' has " + std::to_string(numbers.size()) + " numbers, expected x,y,z",
-                kExitUsage);
-  }
-  return {numbers[0], numbers[1], numbers[2]};
-}
-
 glm::dvec3 parseSize(const std::string& text) {
   const std::vector<double> numbers = parseNumbers(text, "--grid");
   if (numbers.size() == 1) return glm::dvec3(numbers[0]);
   return parsePoint(text, "--grid");
-}
-
-/// Points from the arguments; one that names a file stands for the points in it, one a line.
-std::vector<glm::dvec3> readPath(const std::vector<std::string>& arguments) {
-  std::vector<glm::dvec3> points;
-  for (const std::string& argument : arguments) {
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(argument, ignored)) {
-      points.push_back(parsePoint(argument, "--path"));
-      continue;
-    }
-    std::ifstream file(argument);
-    std::string line;
-    for (uint64_t number = 1; std::getline(file, line); ++number) {
-      std::istringstream words(line.substr(0, line.find('#')));
-      for (std::string word; words >> word;) {
-        points.push_back(parsePoint(word, argument + ":" + std::to_string(number)));
-      }
-    }
-    if (!file.eof()) throw Error(argument + ": cannot be read");
-  }
-  return points;
 }
 
 /// offset: of the scene; arguments have the file's coordinates.
@@ -176,7 +127,7 @@ void sayBlocked(const std::vector<ClearCells::Blocked>& blocked) {
 
 std::vector<ViewCell> placePath(const Scene& scene, const CellsArguments& arguments) {
   const PathOptions& options = arguments.path_options;
-  std::vector<glm::dvec3> points = readPath(arguments.path);
+  std::vector<glm::dvec3> points = readPoints(arguments.path, "--path");
   for (glm::dvec3& point : points) point -= scene.offset;
   std::vector<ViewCell> cells = pathCells(points, options);
   const double smallest = std::min({options.width, options.height, options.length});
@@ -199,18 +150,54 @@ std::vector<ViewCell> placePath(const Scene& scene, const CellsArguments& argume
   return std::move(clear.cells);
 }
 
+/// "3", "3 to 17", "3 to 17 and 40 more".
+std::string runsText(const std::vector<uint32_t>& frames) {
+  size_t run = 1;
+  while (run < frames.size() && frames[run] == frames[run - 1] + 1) ++run;
+  const std::string first =
+      run == 1 ? fmt::format("{}", frames[0]) : fmt::format("{} to {}", frames[0], frames[run - 1]);
+  return run == frames.size() ? first : fmt::format("{} and {} more", first, frames.size() - run);
+}
+
+std::vector<ViewCell> placeWalk(const Scene& scene, const CellsArguments& arguments) {
+  const PathOptions& options = arguments.path_options;
+  const CameraPath path = moved(loadWalk(arguments.walk), -scene.offset);
+  const double smallest = std::min({options.width, options.height, options.length});
+  const double margin = arguments.margin.value_or(defaultMargin(sceneBounds(scene), smallest));
+  WalkCells walk = walkCells(scene, buildSceneTree(scene), path, options, margin);
+  if (walk.cells.empty()) {
+    throw Error(fmt::format(
+        "no frame of the walk is {:g} away from all triangles; move it, or take --margin 0", margin));
+  }
+  if (!walk.frames_left_out.empty()) {
+    fmt::print(
+        "warning: no cell holds {} {}, in which the eye is nearer to a triangle than {:g} (--margin)\n",
+        walk.frames_left_out.size() == 1 ? "frame" : "frames", runsText(walk.frames_left_out), margin);
+  }
+  if (walk.inset > 0) {
+    fmt::print("{} of {} boxes are smaller, to keep clear of triangles (--margin)\n", walk.inset,
+               walk.cells.size());
+  }
+  return std::move(walk.cells);
+}
+
+std::vector<ViewCell> placeCells(const Scene& scene, const CellsArguments& arguments) {
+  if (!arguments.grid.empty()) return placeGrid(scene, arguments);
+  return arguments.walk.empty() ? placePath(scene, arguments) : placeWalk(scene, arguments);
+}
+
 void run(const CellsArguments& arguments) {
-  if (arguments.grid.empty() == arguments.path.empty()) {
-    throw Error("cells: takes either --grid or --path (see: sightline cells --help)", kExitUsage);
+  if (int(arguments.grid.empty()) + int(arguments.path.empty()) + int(arguments.walk.empty()) != 2) {
+    throw Error("cells: takes one of --grid, --path and --walk (see: sightline cells --help)", kExitUsage);
   }
   std::vector<std::filesystem::path> inputs(arguments.path.begin(), arguments.path.end());
   inputs.push_back(arguments.scene);
+  inputs.push_back(arguments.walk);
   requireSeparate(std::array{arguments.output}, inputs);
   requireNew(arguments.output, arguments.overwrite);
   const TextOutputs outputs({&arguments.output, 1});
   const Scene scene = loadScene(arguments.scene, arguments.load);
-  const std::vector<ViewCell> cells =
-      arguments.grid.empty() ? placePath(scene, arguments) : placeGrid(scene, arguments);
+  const std::vector<ViewCell> cells = placeCells(scene, arguments);
   outputs.save(cellsText(moved(cells, scene.offset), arguments.output), arguments.output);
   fmt::print("{}: {} view cells\n", arguments.output.string(), cells.size());
 }
@@ -234,7 +221,8 @@ constexpr const char* kCellsFooter =
     "      --count 10 1 10\n"
     "  sightline cells city.glb -o cells.json --width 2.5 --height 2 --length 150 \\\n"
     "      --path 0,1.5,-200 0,1.5,200 120,1.5,200\n"
-    "  sightline cells city.glb -o cells.json --path points.txt\n";
+    "  sightline cells city.glb -o cells.json --path points.txt\n"
+    "  sightline cells city.glb -o cells.json --walk walk.json --length 25\n";
 
 void declareGrid(CLI::App& command, CellsArguments& a) {
   CLI::Option* grid = command.add_option("--grid", a.grid, "Boxes of this size over the scene: S, or X,Y,Z");
@@ -268,15 +256,17 @@ void declareGrid(CLI::App& command, CellsArguments& a) {
 void declarePath(CLI::App& command, CellsArguments& a) {
   CLI::Option* path =
       command.add_option("--path", a.path, "Boxes along these points: x,y,z x,y,z ..., or a file");
-  command.add_option("--width", a.path_options.width, "Of a box on the path, sideways")
-      ->capture_default_str()
-      ->needs(path);
-  command.add_option("--height", a.path_options.height, "Of a box on the path, up")
-      ->capture_default_str()
-      ->needs(path);
-  command.add_option("--length", a.path_options.length, "Of a box along the path, at most")
-      ->capture_default_str()
-      ->needs(path);
+  CLI::Option* walk = command.add_option(
+      "--walk", a.walk, "Boxes along a camera's walk (made by path or scene) that hold every frame's eye");
+  const auto declareSize = [&](const char* name, double& value, const char* what) {
+    command.add_option(name, value, what)->capture_default_str()->check([path, walk](const std::string&) {
+      if (path->count() + walk->count() > 0) return std::string();
+      return std::string("is of boxes along a --path or --walk, and neither is given");
+    });
+  };
+  declareSize("--width", a.path_options.width, "Of a box on the path or walk, sideways");
+  declareSize("--height", a.path_options.height, "Of a box on the path or walk, up");
+  declareSize("--length", a.path_options.length, "Of a box along the path or walk, at most");
 }
 
 }  // namespace

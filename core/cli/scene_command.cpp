@@ -13,6 +13,7 @@
 #include "core/formats/cells_file.h"
 #include "core/formats/obj_text.h"
 #include "core/formats/save_scene.h"
+#include "core/formats/walk_file.h"
 #include "core/generate/generate.h"
 #include "core/io/file_io.h"
 
@@ -23,6 +24,8 @@ struct SceneArguments {
   std::string name;
   std::string output;
   std::string cells;
+  std::string walk;
+  uint32_t frames = 3000;
   uint64_t triangles = 2'000'000;
   uint64_t seed = 1;
   uint32_t kinds = 0;  ///< 0: nothing repeats
@@ -30,13 +33,15 @@ struct SceneArguments {
 };
 
 void run(const SceneArguments& arguments) {
-  const std::array<std::filesystem::path, 2> files = {arguments.output, arguments.cells};
+  const std::array<std::filesystem::path, 3> files = {arguments.output, arguments.cells, arguments.walk};
   requireSeparate(files, {});
   for (const std::filesystem::path& file : files) requireNew(file, arguments.overwrite);
   const TextOutputs outputs({files.data(), 1});
-  const auto& [name, output, cells_file, triangles, seed, kinds, overwrite] = arguments;
+  const auto& [name, output, cells_file, walk_file, frames, triangles, seed, kinds, overwrite] = arguments;
   const std::vector<ViewCell> cells =
       kinds > 0 ? generateRepeatedCells(name, triangles, seed, kinds) : generateCells(name, triangles, seed);
+  const CameraPath walk =
+      walk_file.empty() ? CameraPath{} : generateWalk(name, triangles, seed, frames, kinds);
   const Scene scene =
       kinds > 0 ? generateRepeated(name, triangles, seed, kinds) : generateScene(name, triangles, seed);
   if (isStandardOutput(arguments.output)) {
@@ -53,9 +58,14 @@ void run(const SceneArguments& arguments) {
     fmt::print("{}: {} triangles are stored, in {} of {} different ones\n", arguments.output,
                scene.triangles.size(), counted(scene.instances.size(), "instance"), scene.meshes.size());
   }
-  if (arguments.cells.empty()) return;
-  saveCells(cells, arguments.cells);
-  fmt::print("{}: {}\n", arguments.cells, counted(cells.size(), "view cell"));
+  if (!cells_file.empty()) {
+    saveCells(cells, cells_file);
+    fmt::print("{}: {}\n", cells_file, counted(cells.size(), "view cell"));
+  }
+  if (!walk_file.empty()) {
+    saveText(walkText(walk, walk_file), walk_file);
+    fmt::print("{}: {}\n", walk_file, counted(walk.frames(), "frame"));
+  }
 }
 
 std::vector<std::string> sceneNames() {
@@ -72,7 +82,7 @@ std::string footer() {
   return text +
          "Units are metres, y is up. The same name, count and seed give the same file.\n\n"
          "Examples:\n"
-         "  sightline scene city -o city.glb --cells city.json\n"
+         "  sightline scene city -o city.glb --cells city.json --walk walk.json\n"
          "  sightline scene plant -o plant.obj --triangles 200000 --seed 7\n";
 }
 
@@ -106,6 +116,15 @@ void addSceneCommand(CLI::App& app) {
       ->add_option("--cells", arguments->cells,
                    "Also write ten view cells in the scene's free space to this .json file")
       ->check(notStandardOutput("the cells of a scene"));
+  command
+      ->add_option(
+          "--walk", arguments->walk,
+          "Also write a camera's walk through the scene's free space to this .json file: street level, a "
+          "fast turn, cuts, a rise over all")
+      ->check(notStandardOutput("the walk of a scene"));
+  command->add_option("--frames", arguments->frames, "Of the walk")
+      ->transform(wholeNumber(kMinWalkFrames, kMostPathFrames))
+      ->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that are there already");
   command->footer(footer());
   command->callback([arguments] { run(*arguments); });

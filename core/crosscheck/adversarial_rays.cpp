@@ -11,14 +11,21 @@ namespace {
 /// Triangles looked at for the smallest of them.
 constexpr int kSmallestOf = 16;
 
-/// One random ray in the making.
+/// One random ray in the making. A statement draws one number, or several in turn: the order of arguments is
+/// the compiler's.
 class Maker {
  public:
   Maker(const AdversarialScene& scene, RayRandom& random) : s_(scene), random_(random) {}
 
-  Ray toVertex() { return rayTo(startInCell(), triangle().a); }
+  Ray toVertex() {
+    const vec3 target = triangle().a;
+    return rayTo(startInCell(), target);
+  }
 
-  Ray toEdge() { return rayTo(startInCell(), edgePoint(triangle())); }
+  Ray toEdge() {
+    const vec3 target = edgePoint(triangle());
+    return rayTo(startInCell(), target);
+  }
 
   Ray alongEdge() {
     const Corners t = triangle();
@@ -51,7 +58,8 @@ class Maker {
     const Corners t = triangle();
     const vec3 origin = random_.pick(3) == 0 ? edgePoint(t) : innerPoint(t);
     if (random_.pick(4) > 0) return rayTo(origin, triangle().a);
-    return rayAlong(origin, (t.b - t.a) * (random_.unit() - 0.5f) + (t.c - t.a) * (random_.unit() - 0.5f));
+    const float v = random_.unit() - 0.5f, u = random_.unit() - 0.5f;
+    return rayAlong(origin, (t.b - t.a) * u + (t.c - t.a) * v);
   }
 
   Ray atFarTiny() {
@@ -97,7 +105,10 @@ class Maker {
   vec3 edgePoint(const Corners& t) {
     return random_.pick(4) == 0 ? (t.a + t.b) * 0.5f : glm::mix(t.a, t.b, random_.unit());
   }
-  vec3 innerPoint(const Corners& t) { return glm::mix(edgePoint(t), t.c, random_.unit()); }
+  vec3 innerPoint(const Corners& t) {
+    const float share = random_.unit();
+    return glm::mix(edgePoint(t), t.c, share);
+  }
 
   const AdversarialScene& s_;
   RayRandom& random_;

@@ -33,6 +33,10 @@ class CellSampler {
  public:
   virtual ~CellSampler() = default;
 
+  /// Compiles the stages that bakes need, so that no cell's clock counts it; else each is at its first use.
+  /// explores: border and reverse rays, too.
+  virtual void prepare(bool explores, const StageParams& params) { (void)explores, (void)params; }
+
   /// Empties set, list and counters. faces: 1..6 as of cellFaces.
   virtual void beginCell(std::span<const Face> faces, const StageParams& params) = 0;
 

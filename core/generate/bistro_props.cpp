@@ -186,7 +186,8 @@ void makePottedPlant(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
     const Turn t = turn(random.unit());
     const float out = size * random.uniform(0.15f, 0.65f), high = size * random.uniform(0.4f, 1.2f);
     const float droop = random.uniform(0.2f, 0.9f), width = size * random.uniform(0.015f, 0.035f);
-    const glm::vec3 root(0.15f * size * random.uniform(-1, 1), 0.4f, 0.15f * size * random.uniform(-1, 1));
+    const float root_z = 0.15f * size * random.uniform(-1, 1), root_x = 0.15f * size * random.uniform(-1, 1);
+    const glm::vec3 root(root_x, 0.4f, root_z);
     const glm::vec3 away(t.cos, 0, t.sin), side(-t.sin, 0, t.cos);
     const float fold = random.uniform(-0.4f, 0.4f);
     mesh.sheet(1, pieces, false, [&](uint32_t i, uint32_t j) {

@@ -252,7 +252,8 @@ void gableRoof(MeshBuilder& mesh, float w, float d, float y, uint32_t level) {
 /// Lift housing, boxes of air conditioning, a water tank, chimneys: on a flat roof.
 void roofClutter(MeshBuilder& mesh, float w, float d, float y, uint32_t level, GeneratorRandom& random) {
   if (level < 5 || w < 8 || d < 8) return;
-  const glm::vec3 lift(random.uniform(1, w / 2 - 3), y, random.uniform(1, d - 5));
+  const float lift_z = random.uniform(1, d - 5), lift_x = random.uniform(1, w / 2 - 3);
+  const glm::vec3 lift(lift_x, y, lift_z);
   mesh.box(lift, lift + glm::vec3(3, 2.6f, 4), kNoLowY);
   if (level < 6) return;
   const uint32_t units = 1 + random.below(4);

@@ -10,22 +10,27 @@ struct Generator {
   GeneratedSceneInfo info;
   std::vector<ScenePart> (*parts)(uint64_t triangles, uint64_t seed);
   std::vector<ViewCell> (*cells)(uint64_t triangles, uint64_t seed);
+  CameraPath (*walk)(uint64_t triangles, uint64_t seed, uint32_t frames);
 };
 
 const std::vector<Generator>& generators() {
   static const std::vector<Generator> all = {
       {{"city", "streets in a grid, facades with recessed windows and ledges, trees, cars"},
        cityParts,
-       [](uint64_t triangles, uint64_t seed) { return cityCells(triangles, seed); }},
+       [](uint64_t triangles, uint64_t seed) { return cityCells(triangles, seed); },
+       [](uint64_t triangles, uint64_t seed, uint32_t frames) { return cityWalk(triangles, seed, frames); }},
       {{"canyon", "terrain with overhanging cliffs, bridges and arches of rock, hoodoos, boulders"},
        canyonParts,
-       canyonCells},
+       canyonCells,
+       canyonWalk},
       {{"plant", "storeys of pipes with bends, tanks, gratings and steel: heavy occlusion"},
        plantParts,
-       plantCells},
+       plantCells,
+       plantWalk},
       {{"bistro", "a street of cafes: tables, chairs, cups, lamps, plants, balls of thin fibres"},
        bistroParts,
-       bistroCells},
+       bistroCells,
+       bistroWalk},
   };
   return all;
 }
@@ -85,6 +90,20 @@ std::vector<ViewCell> generateRepeatedCells(const std::string& name, uint64_t tr
                                             uint32_t kinds) {
   checkRepeated(name, triangles, kinds);
   return name == "city" ? cityCells(triangles, seed, true) : plantCells(triangles, seed);
+}
+
+CameraPath generateWalk(const std::string& name, uint64_t triangles, uint64_t seed, uint32_t frames,
+                        uint32_t kinds) {
+  if (kinds > 0) checkRepeated(name, triangles, kinds);
+  const Generator& generator =
+      find(name, triangles, kinds > 0 ? kMaxRepeatedTriangles : kMaxGeneratedTriangles);
+  if (frames < kMinWalkFrames || frames > kMostPathFrames) {
+    throw Error("number of frames " + std::to_string(frames) + " is out of range " +
+                    std::to_string(kMinWalkFrames) + ".." + std::to_string(kMostPathFrames),
+                kExitUsage);
+  }
+  return kinds > 0 && name == "city" ? cityWalk(triangles, seed, frames, true)
+                                     : generator.walk(triangles, seed, frames);
 }
 
 std::vector<ViewCell> generateCells(const std::string& name, uint64_t triangles, uint64_t seed) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/cell/view_cell.h"
+#include "core/path/camera_path.h"
 #include "core/scene/scene.h"
 
 namespace sightline {
@@ -15,6 +16,8 @@ inline constexpr uint64_t kMaxGeneratedTriangles = 20'000'000;
 inline constexpr uint64_t kMaxRepeatedTriangles = 1'000'000'000;
 /// Most kinds of modules.
 inline constexpr uint32_t kMaxKinds = 1000;
+/// Fewest frames of a walk: below, its turn is none.
+inline constexpr uint32_t kMinWalkFrames = 60;
 
 /// The scenes that can be generated, with a line on each for --help.
 struct GeneratedSceneInfo {
@@ -47,5 +50,13 @@ std::vector<ViewCell> generateRepeatedCells(const std::string& name, uint64_t tr
 /// the thesis some, named by it: flat-1 (a rectangle that looks along its normal), box-1 (a volume), street-1
 /// (long and narrow along a street, canyon or aisle). Throws as generateScene.
 std::vector<ViewCell> generateCells(const std::string& name, uint64_t triangles, uint64_t seed);
+
+/// A walk through free space of the scene that generateScene makes of the same arguments, or generateRepeated
+/// with kinds: on street level (aisle, river); a fast turn in the first third of it; a cut to another street,
+/// the other way or another storey; a cut, and a rise until the whole scene is seen. In the bistro it goes
+/// close along the facades, which hide all. The same parts at the same share of the frames in all scenes.
+/// frames: kMinWalkFrames .. kMostPathFrames. Throws as generateScene.
+CameraPath generateWalk(const std::string& name, uint64_t triangles, uint64_t seed, uint32_t frames,
+                        uint32_t kinds = 0);
 
 }  // namespace sightline

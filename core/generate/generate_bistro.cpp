@@ -14,6 +14,7 @@
 #include "core/generate/generator_random.h"
 #include "core/generate/scene_generators.h"
 #include "core/generate/street_props.h"
+#include "core/generate/walk_plan.h"
 
 namespace sightline {
 namespace {
@@ -204,6 +205,23 @@ std::vector<ViewCell> bistroCells(uint64_t triangles, uint64_t seed) {
       {"street-2", {1.6, 1.6, 0}, {1, 1, long_one / 2}, {0, 0, 0}},
       {"street-3", {-1, 1.5, length * 0.2}, {1.2, 2, long_one / 3}, {0, 0, 0}},
   };
+}
+
+CameraPath bistroWalk(uint64_t triangles, uint64_t seed, uint32_t frames) {
+  const BistroLayout street = drawBistro(triangles, seed);
+  constexpr double kEye = 1.6, kAboveRoofs = 32, kNearFacades = 1.8;
+  const double half = street.length() / 2, end = half - 0.5, first = -0.4 * half, last = 0.6 * half;
+  const double extent = 2 * (half + kEnd + kHouseDepth + 5);
+  WalkPlan plan(frames);
+  plan.key(0, {0, kEye, -end}, {0, kEye, -end + 10});
+  plan.turn(kTurnFrom, kTurnTo, {0, kEye, first}, 0, -360);
+  plan.key(0.3, {kNearFacades, kEye, first + 0.2 * (last - first)}, {10, kEye, first + 0.4 * (last - first)});
+  plan.key(kSecondTo, {kNearFacades, kEye, last}, {11, kEye, last + 1});
+  plan.cut(kSideFrom, {0, kEye, end}, {0, kEye, end - 10});
+  plan.key(kSideTo, {0, kEye, 0}, {0, kEye, -10});
+  plan.cut(kRiseFrom, {0, kAboveRoofs, -half / 2}, {0, kAboveRoofs / 2, 10 - half / 2});
+  plan.seeAll({0, 0, 0}, extent, {0, 0, -1});
+  return plan.path();
 }
 
 }  // namespace sightline

@@ -9,6 +9,7 @@
 #include "core/generate/generator_random.h"
 #include "core/generate/rocks.h"
 #include "core/generate/scene_generators.h"
+#include "core/generate/walk_plan.h"
 
 namespace sightline {
 namespace {
@@ -58,7 +59,8 @@ void addRock(std::vector<ScenePart>& parts, const Terrain& terrain, uint32_t ind
   float t;
   uint32_t tries = 0;
   do {
-    at = mapPoint(*terrain, random.uniform(-0.95f, 0.95f), random.uniform(-0.9f, 0.9f));
+    const float across = random.uniform(-0.9f, 0.9f), along = random.uniform(-0.95f, 0.95f);
+    at = mapPoint(*terrain, along, across);
     t = terrain->steepness(at);
   } while (t < kCanyonFreeLane + 0.04f && ++tries < 100);
   if (tries == 100) at = mapPoint(*terrain, random.uniform(-0.95f, 0.95f), 0.8f);
@@ -158,6 +160,33 @@ std::vector<ViewCell> canyonCells(uint64_t triangles, uint64_t seed) {
       riverCell(*terrain, "street-2", 0.02 * e, longest),
       riverCell(*terrain, "street-3", 0.3 * e, longest / 2),
   };
+}
+
+CameraPath canyonWalk(uint64_t triangles, uint64_t seed, uint32_t frames) {
+  const Terrain terrain = makeTerrain(triangles, seed);
+  const double e = terrain->extent(), d = terrain->depth();
+  const auto river = [&](double share, double y) {
+    return glm::dvec3(share * e, y, double(terrain->riverZ(float(share * e))));
+  };
+  constexpr double kStep = 0.01, kAhead = 0.03;  // of the extent: the river's bends are longer
+  const double eye = 0.02 * d + 1.5;
+  WalkPlan plan(frames);
+  const auto follow = [&](double from_share, double to_share, double from, double to) {
+    const double steps = std::ceil(std::fabs(to - from) / kStep), ahead = to > from ? kAhead : -kAhead;
+    for (double i = 0; i <= steps; ++i) {
+      const double at = from + (to - from) * (i / steps);
+      plan.key(from_share + (to_share - from_share) * (i / steps), river(at, eye), river(at + ahead, eye));
+    }
+  };
+  follow(0, kTurnFrom, -0.42, -0.2);
+  plan.turn(kTurnFrom, kTurnTo, river(-0.2, eye), 90, -270);
+  follow(kTurnTo, kSecondTo, -0.2, 0);
+  plan.cut(kSideFrom, river(0.4, eye), river(0.4 - kAhead, eye));
+  follow(kSideFrom, kSideTo, 0.4, 0.2);
+  plan.cut(kRiseFrom, river(0.1, 1.8 * d), river(0, d));
+  plan.key(0.78, river(0.1, 2.2 * d), river(0, d));
+  plan.seeAll({0, 0, 0}, e, {0, 0, 1});
+  return plan.path();
 }
 
 }  // namespace sightline

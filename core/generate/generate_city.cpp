@@ -14,6 +14,7 @@
 #include "core/generate/generator_random.h"
 #include "core/generate/scene_generators.h"
 #include "core/generate/street_props.h"
+#include "core/generate/walk_plan.h"
 
 namespace sightline {
 namespace {
@@ -167,8 +168,8 @@ void addStreetSide(std::vector<ScenePart>& parts, const Frame& kerb, float lengt
       add("bin", pavement, makeBin);
     }
     if (random.chance(0.6f)) {
-      add("car", kerb.at({1.25f, 0, at + random.uniform(-0.4f, 0.4f)}, random.chance(0.5f) ? 0.0f : 0.5f),
-          makeCar);
+      const float turned = random.chance(0.5f) ? 0.0f : 0.5f;
+      add("car", kerb.at({1.25f, 0, at + random.uniform(-0.4f, 0.4f)}, turned), makeCar);
     }
   }
 }
@@ -285,6 +286,28 @@ std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed, bool even) {
        {2.5, 2, std::min(600.0, z_length * 0.9)},
        {0, 0, 0}},
   };
+}
+
+CameraPath cityWalk(uint64_t triangles, uint64_t seed, uint32_t frames, bool even) {
+  const CityLayout city = drawCity(triangles, seed, even);
+  constexpr double kEye = 1.7, kAboveRoofs = 110;
+  const uint32_t n = city.x.blocks();
+  const double x = city.x.center(n / 2), z = city.z.center(n / 2), side_x = city.x.center(n - 1);
+  const double z0 = city.z.block_low(0), z1 = city.z.block_high(n - 1), x1 = city.x.block_high(n - 1);
+  const double extent = std::max(city.x.end() - city.x.start(), city.z.end() - city.z.start()) + 60;
+  WalkPlan plan(frames);
+  plan.key(0, {x, kEye, z0}, {x, kEye, z0 + 10});
+  plan.turn(kTurnFrom, kTurnTo, {x, kEye, z}, 0, -270);
+  plan.key(kSecondTo, {x1, kEye, z}, {x1 + 10, kEye, z});
+  plan.cut(kSideFrom, {side_x, kEye, z1}, {side_x, kEye, z1 - 10});
+  plan.key(kSideTo, {side_x, kEye, z0}, {side_x, kEye, z0 - 10});
+  plan.cut(kRiseFrom, {x, kEye, z}, {x, kEye, z - 20});
+  plan.key(0.78, {x, kAboveRoofs / 2, z}, {x, kAboveRoofs / 4, z - 40});
+  plan.key(0.84, {x, kAboveRoofs, z}, {x, kAboveRoofs / 2, z - 60});
+  plan.key(0.86, {x, kAboveRoofs * 1.2, z}, {x, kAboveRoofs / 2, z - 60});
+  plan.seeAll({(city.x.start() + city.x.end()) / 2, 0, (city.z.start() + city.z.end()) / 2}, extent,
+              {0, 0, 1});
+  return plan.path();
 }
 
 }  // namespace sightline

@@ -13,6 +13,7 @@
 #include "core/generate/plant_pipes.h"
 #include "core/generate/plant_units.h"
 #include "core/generate/scene_generators.h"
+#include "core/generate/walk_plan.h"
 
 namespace sightline {
 namespace {
@@ -131,7 +132,8 @@ PipeBox PlantBuilder::addMachines(const Frame& bay, const std::string& name, Gen
       return {{2.7f, 0, 4.5f - radius}, {11.3f, 2 * radius + 0.9f, 9.5f + radius}};
     }
     case 2: {
-      const glm::vec3 size(9, random.uniform(2.4f, 4), random.uniform(2, 4));
+      const float deep = random.uniform(2, 4), high = random.uniform(2.4f, 4);
+      const glm::vec3 size(9, high, deep);
       add("exchanger-" + name, bay.at({2.5f, 0, 7 - size.z / 2}),
           [=](MeshBuilder& mesh, uint32_t level) { makeTubeBank(mesh, size, level); });
       return {{2.5f, 0, 7 - size.z / 2}, {11.5f, size.y, 7 + size.z / 2}};
@@ -314,6 +316,25 @@ std::vector<ViewCell> plantCells(uint64_t triangles, uint64_t seed) {
       {"street-2", {w / 2, up + 1.5, z}, {1.6, 2, std::min(150.0, w - 1)}, {0, 90, 0}},
       {"street-3", {-6, 1.8, d / 2}, {2.5, 2, std::min(150.0, d)}, {0, 0, 0}},
   };
+}
+
+CameraPath plantWalk(uint64_t triangles, uint64_t seed, uint32_t frames) {
+  const PlantLayout plant = drawPlant(triangles, seed);
+  constexpr double kEye = 1.6, kBeside = -6;  // of the bays
+  const double x = plant.aisle((plant.nx - 1) / 2), z = plant.aisle((plant.nz - 1) / 2);
+  const double w = plant.width(), d = plant.depth();
+  const double up = (plant.storeys > 1 ? kStorey : 0) + kEye, top = kStorey * double(plant.storeys);
+  WalkPlan plan(frames);
+  plan.key(0, {x, kEye, 1}, {x, kEye, 11});
+  plan.turn(kTurnFrom, kTurnTo, {x, kEye, z}, 0, -270);
+  plan.key(kSecondTo, {w - 1, kEye, z}, {w + 9, kEye, z});
+  plan.cut(kSideFrom, {w - 1, up, z}, {w - 11, up, z});
+  plan.key(kSideTo, {1, up, z}, {-9, up, z});
+  plan.cut(kRiseFrom, {kBeside, kEye, d / 2}, {4, kEye, d / 2});
+  plan.key(0.8, {kBeside, top, d / 2}, {4, top / 2, d / 2});
+  plan.key(0.84, {kBeside, top + 8, d / 2}, {8, top / 2, d / 2});
+  plan.seeAll({w / 2, 0, d / 2}, std::max(w, d) + 2 * kMargin + 40, {-1, 0, 0});
+  return plan.path();
 }
 
 }  // namespace sightline

@@ -6,7 +6,8 @@
 namespace sightline {
 
 /// Small generator for scene layout: splitmix64. The distributions of <random> differ between standard
-/// libraries, these do not.
+/// libraries, these do not. Draw one number a statement or a declarator: in which order arguments are
+/// computed is the compiler's choice.
 class GeneratorRandom {
  public:
   explicit GeneratorRandom(uint64_t seed) : state_(seed) {}

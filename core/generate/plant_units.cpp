@@ -120,7 +120,8 @@ void makeTank(MeshBuilder& mesh, float radius, float height, uint64_t seed, uint
   const Frame base = mesh.frame;
   const uint32_t nozzles = 3 + random.below(5), sides = std::min(48u, 4 + level);
   for (uint32_t i = 0; i < nozzles; ++i) {
-    mesh.frame = base.at({0, random.uniform(low, high), 0}, random.unit());
+    const float turned = random.unit();
+    mesh.frame = base.at({0, random.uniform(low, high), 0}, turned);
     const float r = random.uniform(0.06f, 0.2f), out = radius + random.uniform(0.15f, 0.3f);
     const glm::vec3 pipe[] = {{radius - 0.05f, 0, 0}, {out, 0, 0}};
     mesh.tube(pipe, r, sides, false);

@@ -5,6 +5,7 @@
 
 #include "core/cell/view_cell.h"
 #include "core/generate/scene_parts.h"
+#include "core/path/camera_path.h"
 
 namespace sightline {
 
@@ -14,6 +15,12 @@ namespace sightline {
 std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed);
 /// even: of repeatedCity, whose blocks are all of one size.
 std::vector<ViewCell> cityCells(uint64_t triangles, uint64_t seed, bool even = false);
+/// Walks through free space, of so many frames; even: as of cityCells.
+CameraPath cityWalk(uint64_t triangles, uint64_t seed, uint32_t frames, bool even = false);
+CameraPath canyonWalk(uint64_t triangles, uint64_t seed, uint32_t frames);
+CameraPath plantWalk(uint64_t triangles, uint64_t seed, uint32_t frames);
+CameraPath bistroWalk(uint64_t triangles, uint64_t seed, uint32_t frames);
+
 std::vector<ScenePart> canyonParts(uint64_t triangles, uint64_t seed);
 std::vector<ViewCell> canyonCells(uint64_t triangles, uint64_t seed);
 // The scenes that can be made of few kinds of modules, repeated (bays, blocks of houses).

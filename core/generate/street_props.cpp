@@ -120,7 +120,8 @@ void makeTree(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
   const float trunk = random.uniform(2.5f, 3.1f), crown = random.uniform(1.25f, 1.6f);
   const float high = random.uniform(1.3f, 1.7f);
   const uint32_t sides = std::min(16u, 3 + level / 2);
-  const glm::vec3 bend(random.uniform(-0.1f, 0.1f), 0, random.uniform(-0.1f, 0.1f));
+  const float bend_z = random.uniform(-0.1f, 0.1f), bend_x = random.uniform(-0.1f, 0.1f);
+  const glm::vec3 bend(bend_x, 0, bend_z);
   const glm::vec3 stem[] = {{0, 0, 0}, glm::vec3(0, trunk * 0.6f, 0) + bend, {0, trunk + high, 0}};
   const float radii[] = {0.16f, 0.11f, 0.03f};
   mesh.tube(stem, radii, sides, false);

@@ -50,6 +50,8 @@ class CellBake {
                                                                         : kRandomLaunchRaysGpu),
         yield_(params.batch_rays) {
     if (params.method == Method::kRaster) near_distance_ = hemicubeNear(scene, faces_);
+    device_.prepare(explores(), stage_params_);
+    start_ = Clock::now();
     device_.beginCell(faces_, stage_params_);
   }
 
@@ -358,7 +360,7 @@ class CellBake {
   CellState state_;
   StopRule rule_;
   TimeLeft time_left_;
-  Clock::time_point start_ = Clock::now();
+  Clock::time_point start_;
   uint32_t random_launch_rays_;
   uint64_t next_point_ = 0;  ///< of the Halton sequence; never restarts
   float near_distance_ = 0;  ///< of hemicubes

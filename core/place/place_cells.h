@@ -10,6 +10,7 @@
 
 #include "bvh/bvh.h"
 #include "core/cell/view_cell.h"
+#include "core/path/camera_path.h"
 #include "core/scene/in_solid.h"
 #include "core/scene/scene.h"
 
@@ -85,6 +86,22 @@ struct PathOptions {
 /// Named path-1, path-2, ... Points twice in a row are one. Throws Error (exit code 2) for fewer than two
 /// different points and sizes or points that are not finite.
 std::vector<ViewCell> pathCells(std::span<const glm::dvec3> points, const PathOptions& options);
+
+/// View cells along a camera's path.
+struct WalkCells {
+  std::vector<ViewCell> cells;
+  std::vector<uint32_t> frames_left_out;  ///< the eye is nearer to a triangle than the margin
+  uint64_t inset = 0;                     ///< cells that are smaller, for the margin
+};
+
+/// Few boxes that hold the eye of every frame of a walk but those left out: each along the line from its
+/// first frame to its last, x level, no longer, wider and higher than options say, and its sides `margin`
+/// away from triangles (0: wherever they are). Eyes keep a quarter of the width and height from the sides of
+/// a box before these come in. Boxes in a row share a frame, so that they meet; none reaches over a cut.
+/// Named walk-1, walk-2, ... The path has the scene's coordinates (Scene::offset). bvh is of this scene.
+/// Throws Error (exit code 2) for sizes that are not positive and finite, and a margin too large for them.
+WalkCells walkCells(const Scene& scene, const Bvh& bvh, const CameraPath& path, const PathOptions& options,
+                    double margin);
 
 /// Cells that keep clear of triangles, and those that cannot.
 struct ClearCells {

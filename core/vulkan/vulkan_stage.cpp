@@ -47,8 +47,9 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderM
   return info;
 }
 
-VulkanHandle<VkPipelineLayout> pushLayout(const VulkanContext& context, VkShaderStageFlags stages) {
-  const VkPushConstantRange range{stages, 0, sizeof(VulkanPush)};
+VulkanHandle<VkPipelineLayout> pushLayout(const VulkanContext& context, VkShaderStageFlags stages,
+                                          uint32_t bytes) {
+  const VkPushConstantRange range{stages, 0, bytes};
   auto info = vkStruct<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
   info.pushConstantRangeCount = 1;
   info.pPushConstantRanges = &range;
@@ -136,22 +137,28 @@ void VulkanStage::createRayPipeline(const std::string& generation_name, const st
   // The table: one record a group, each at a multiple of the base alignment.
   const VulkanLimits& limits = context_->limits();
   table_stride_ = alignUp(limits.handle_bytes, limits.table_alignment);
-  std::vector<char> handles(3 * limits.handle_bytes), records(3 * table_stride_);
+  std::vector<char> handles(3 * limits.handle_bytes);
+  table_records_.resize(3 * table_stride_);
   checkVk(api.vkGetRayTracingShaderGroupHandlesKHR(context_->device(), pipeline, 0, 3, handles.size(),
                                                    handles.data()),
           "vkGetRayTracingShaderGroupHandlesKHR");
   for (size_t i = 0; i < 3; ++i) {
-    std::memcpy(&records[i * table_stride_], &handles[i * limits.handle_bytes], limits.handle_bytes);
+    std::memcpy(&table_records_[i * table_stride_], &handles[i * limits.handle_bytes], limits.handle_bytes);
   }
-  table_ = context_->buffer(records.size() + limits.table_alignment, "shader binding table");
-  table_start_ = alignUp(table_.address(), limits.table_alignment);
+}
+
+void VulkanStage::uploadTable() const {
+  const uint64_t alignment = context_->limits().table_alignment;
+  table_ = context_->buffer(table_records_.size() + alignment, "shader binding table");
+  table_start_ = alignUp(table_.address(), alignment);
   VulkanCommands commands(*context_, context_->queue(), context_->queueFamily());
-  commands.update(table_, records.data(), records.size(), table_start_ - table_.address());
+  commands.update(table_, table_records_.data(), table_records_.size(), table_start_ - table_.address());
   commands.finish();
 }
 
 void VulkanStage::record(VkCommandBuffer commands, VkDeviceAddress launch, uint32_t count) const {
-  if (pipeline_.get() == VK_NULL_HANDLE) createPipeline(list_name_);
+  compile();
+  if (!table_records_.empty() && table_.bytes() == 0) uploadTable();
   const VulkanApi& api = context_->api();
   const VulkanLimits& limits = context_->limits();
   const bool pipelines = group_size_ == 0;

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "core/shared/vulkan_push.h"
 #include "core/vulkan/vulkan_context.h"
@@ -11,8 +12,9 @@ namespace sightline {
 VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name);
 /// Its main function as a stage.
 VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderModule module);
-/// A layout of push constants for these stages and nothing else.
-VulkanHandle<VkPipelineLayout> pushLayout(const VulkanContext& context, VkShaderStageFlags stages);
+/// A layout of so many bytes of push constants for these stages and nothing else.
+VulkanHandle<VkPipelineLayout> pushLayout(const VulkanContext& context, VkShaderStageFlags stages,
+                                          uint32_t bytes = sizeof(VulkanPush));
 void destroyPipeline(const VulkanContext& context, VkPipeline pipeline);
 
 /// A program that runs one work item an invocation: a tracing stage, or a compute shader over a list.
@@ -21,12 +23,18 @@ class VulkanStage {
   VulkanStage() = default;
   /// A compute shader ("count_bits.comp"). group_size: work items, its constant 0.
   static VulkanStage compute(const VulkanContext& context, const std::string& name, uint32_t group_size);
-  /// The same of shader "NAME.comp" with groups of SL_LIST_GROUP, compiled when it is first recorded, since who
-  /// only traces rays needs none of them.
+  /// The same of shader "NAME.comp" with groups of SL_LIST_GROUP, compiled when it is first recorded, since
+  /// who only traces rays needs none of them.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
-  /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each.
+  /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each. Threads may make
+  /// several at once (a driver takes two seconds for one).
   static VulkanStage rays(const VulkanContext& context, const std::string& generation,
                           const std::string& miss, const std::string& hit);
+
+  /// Compiles what is not yet.
+  void compile() const {
+    if (pipeline_.get() == VK_NULL_HANDLE) createPipeline(list_name_);
+  }
 
   /// Records the dispatch of the items 0 .. count - 1, in pieces that the device takes.
   /// launch: of VulkanPush.
@@ -39,6 +47,7 @@ class VulkanStage {
   }
   void createPipeline(const std::string& name) const;
   void createRayPipeline(const std::string& generation, const std::string& miss, const std::string& hit);
+  void uploadTable() const;
 
   const VulkanContext* context_ = nullptr;
   VkShaderStageFlags stages_ = 0;
@@ -46,9 +55,10 @@ class VulkanStage {
   VulkanHandle<VkPipelineLayout> layout_;
   std::string list_name_;                      ///< a list's shader, to be compiled at the first record()
   mutable VulkanHandle<VkPipeline> pipeline_;  ///< a device's stages are recorded by one thread at a time
-  VulkanBuffer table_;                         ///< shader binding table: ray generation, miss, hit
-  VkDeviceAddress table_start_ = 0;
   uint64_t table_stride_ = 0;
+  std::vector<char> table_records_;  ///< shader binding table: ray generation, miss, hit
+  mutable VulkanBuffer table_;       ///< of them, from the first record() on
+  mutable VkDeviceAddress table_start_ = 0;
 };
 
 }  // namespace sightline

@@ -47,8 +47,10 @@ Scene slitScene(float gap, float thickness) {
 std::vector<Ray> raysThrough(float gap, float before, size_t count, Random& random) {
   std::vector<Ray> rays;
   while (rays.size() < count) {
-    const vec3 through((random.unit() - 0.5f) * gap * 0.999f, random.unit() * 4 - 2, 0);
-    const vec3 direction = vec3(random.unit() * 4 - 2, random.unit() * 4 - 2, 1) * (0.5f + random.unit());
+    const float through_y = random.unit() * 4 - 2, through_x = (random.unit() - 0.5f) * gap * 0.999f;
+    const vec3 through(through_x, through_y, 0);
+    const float length = 0.5f + random.unit(), y = random.unit() * 4 - 2, x = random.unit() * 4 - 2;
+    const vec3 direction = vec3(x, y, 1) * length;
     rays.push_back(
         {vec4(through - direction * (before / direction.z * (1 + random.unit())), 0), vec4(direction, 0)});
   }

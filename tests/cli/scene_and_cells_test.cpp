@@ -220,8 +220,8 @@ TEST(CellsCommand, SaysWhatIsWrong) {
   const auto scene = (folder / "city.glb").string();
   ASSERT_EQ(runProgram("scene city --triangles 1000 -o '" + scene + "'").exit_code, 0);
   const std::string start = "cells '" + scene + "' -o '" + (folder / "cells.json").string() + "' ";
-  expectLine(start, 2, "--grid or --path");
-  expectLine(start + "--grid 4 --path 0,0,0 1,1,1", 2, "--grid or --path");
+  expectLine(start, 2, "one of --grid, --path and --walk");
+  expectLine(start + "--grid 4 --path 0,0,0 1,1,1", 2, "one of --grid, --path and --walk");
   expectLine(start + "--grid 4,5", 2, "x,y,z");
   expectLine(start + "--grid 4,a,5", 2, "4,a,5");
   expectLine(start + "--grid 0", 2, "positive");

@@ -95,7 +95,8 @@ inline Scene soup(uint32_t count, double size, double width, uint32_t seed) {
   Numbers numbers(seed);
   for (uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 a = numbers.point(), b = a + numbers.point() * size;
-    addTriangle(scene, a, b, glm::mix(a, b, numbers.unit()) + numbers.point() * (size * width));
+    const glm::dvec3 off = numbers.point() * (size * width);
+    addTriangle(scene, a, b, glm::mix(a, b, numbers.unit()) + off);
   }
   return scene;
 }

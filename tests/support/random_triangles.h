@@ -40,7 +40,8 @@ inline Scene soup(Random& random, int count, float size, float sliver) {
   Scene scene;
   for (int i = 0; i < count; ++i) {
     const vec3 a = random.point(1), b = a + random.point(size);
-    addTriangle(scene, a, b, glm::mix(a, b, random.unit()) + random.point(size * sliver));
+    const vec3 off = random.point(size * sliver);
+    addTriangle(scene, a, b, glm::mix(a, b, random.unit()) + off);
   }
   return scene;
 }

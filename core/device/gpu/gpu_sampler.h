@@ -24,8 +24,9 @@ namespace sightline {
 ///   void fill(Buffer, word, bytes), copy(from, to, bytes)
 ///   StageLaunch& launch()                      of the next run
 ///   void bind(StageBuffer, Buffer)             for the runs that follow
-///   void run(GpuStage, count)                  over so many rays or work items, after all before it
-///   array takeCounters()                       waits; kCounterWords words, which are 0 again then
+///   void prepare(span<const GpuStage>)         compiles these tracing stages and all others, if that is to
+///   do void run(GpuStage, count)                  over so many rays or work items, after all before it array
+///   takeCounters()                       waits; kCounterWords words, which are 0 again then
 ///
 /// place_of is bound by the API, as are scene and counters.
 template <typename Api>
@@ -43,6 +44,12 @@ class GpuSampler : public Device {
   }
 
   DeviceInfo info() const override { return api_.info(); }
+
+  void prepare(bool explores, const StageParams& params) override {
+    const GpuStage border = isGvs(params) ? GpuStage::kTraceGvsBorder : GpuStage::kTraceBorder;
+    const GpuStage stages[] = {GpuStage::kTraceRandom, border, GpuStage::kTraceReverse};
+    api_.prepare(std::span(stages).first(explores ? 3 : 1));
+  }
 
   void beginCell(std::span<const Face> faces, const StageParams& params) override {
     api_.write(at(StageBuffer::faces), faces.data(), faces.size_bytes());

@@ -34,6 +34,7 @@ class OpenClStages {
 
   StageLaunch& launch() { return launch_; }
   void bind(StageBuffer name, const ClBuffer& buffer);
+  void prepare(std::span<const GpuStage>) {}  // the program was built at once
   void run(GpuStage stage, uint64_t count);
   std::array<uint32_t, kCounterWords> takeCounters();
 

@@ -1,5 +1,7 @@
 #include "core/device/vulkan/vulkan_stages.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 
 #include "core/device/vulkan/tracing_needs.h"
@@ -72,10 +74,22 @@ void VulkanStages::read(const VulkanBuffer& buffer, void* target, uint64_t bytes
   }
 }
 
-void VulkanStages::run(GpuStage stage, uint64_t count) {
-  std::optional<VulkanStage>& made = stages_[uint32_t(stage)];
-  if (!made) made = tracingStage(context_, shaderName(stage), group_, features_);
-  runner_.run(*made, static_cast<uint32_t>(count));
+void VulkanStages::prepare(std::span<const GpuStage> stages) {
+  std::vector<GpuStage> all(stages.begin(), stages.end());
+  for (uint32_t i = 0; i < kGpuStages; ++i) {
+    if (!tracesRays(GpuStage(i))) all.push_back(GpuStage(i));
+  }
+  tbb::parallel_for(size_t(0), all.size(), [&](size_t i) { stage(all[i]).compile(); });
+}
+
+void VulkanStages::run(GpuStage name, uint64_t count) {
+  runner_.run(stage(name), static_cast<uint32_t>(count));
+}
+
+const VulkanStage& VulkanStages::stage(GpuStage name) {
+  std::optional<VulkanStage>& made = stages_[uint32_t(name)];
+  if (!made) made = tracingStage(context_, shaderName(name), group_, features_);
+  return *made;
 }
 
 }  // namespace sightline

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <optional>
+#include <span>
 
 #include "core/device/device.h"
 #include "core/device/vulkan/tracing_needs.h"
@@ -34,6 +35,8 @@ class VulkanStages {
 
   StageLaunch& launch() { return runner_.launch.numbers; }
   void bind(StageBuffer name, const VulkanBuffer& buffer) { runner_.bind(name, buffer); }
+  /// The pipelines of these tracing stages and of all others, on several threads.
+  void prepare(std::span<const GpuStage> stages);
   /// Makes the stage's pipeline when it is first needed.
   void run(GpuStage stage, uint64_t count);
   std::array<uint32_t, kCounterWords> takeCounters() { return runner_.takeCounters(); }
@@ -42,6 +45,9 @@ class VulkanStages {
   VulkanRunner& runner() { return runner_; }
 
  private:
+  /// Threads may ask for different ones at once.
+  const VulkanStage& stage(GpuStage name);
+
   SurfaceFeatures features_;
   VulkanContext context_;
   VulkanRunner runner_;
