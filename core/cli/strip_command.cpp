@@ -49,7 +49,7 @@ struct StripArguments {
 };
 
 /// Rounds of aimed rays at most.
-constexpr uint32_t kMostRounds = 64;
+constexpr uint32_t kMostRounds = 4;
 
 bool isSets(const std::filesystem::path& from) {
   const std::string extension = lowerExtension(from);
@@ -272,10 +272,10 @@ void runStrip(const StripArguments& arguments) {
 constexpr const char* kStripFooter =
     "The output is the scene file itself, without the triangles that are seen from no\n"
     "cell; its folder must hold what the scene names beside it. --from outside: from\n"
-    "anywhere outside of the scene's bounds. A triangle goes if no ray met it, nor any\n"
-    "that shares an edge with it (--tight: if no ray met it). What a cell is said to\n"
-    "miss, and the last line, is the promise; more rays (--aimed, --rays, --n-rand, a\n"
-    "lower --threshold) tighten it.\n\n"
+    "anywhere outside of the scene's bounds. A triangle goes if no ray met it, nor\n"
+    "any that shares an edge with it (--tight: if no ray met it). What a cell is said\n"
+    "to miss, and the last line, is the promise; more rays (--aimed, --rays, --n-rand,\n"
+    "a lower --threshold) tighten it.\n\n"
     "Examples:\n"
     "  sightline strip car.glb -o shell.glb\n"
     "  sightline strip level.glb -o walked.glb --from cells.json --compact\n"
@@ -308,10 +308,10 @@ void addStripCommand(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option(
-          "--aimed", a->aimed,
-          "rays of each cell at each triangle that would go, in rounds until one finds nothing; what they "
-          "meet stays; 0: none")
+      ->add_option("--aimed", a->aimed,
+                   "rays of each cell at each triangle that would go, in rounds until one finds nothing, "
+                   "four at most; what "
+                   "they meet stays; 0: none")
       ->transform(wholeNumber(0, 1u << 20))
       ->type_name("N")
       ->capture_default_str();
