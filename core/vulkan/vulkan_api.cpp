@@ -72,14 +72,17 @@ void VulkanApi::loadInstance(VkInstance instance) {
 #undef SL_LOAD
 }
 
-void VulkanApi::loadDevice(VkDevice device, bool acceleration_structures, bool ray_tracing_pipelines) {
+void VulkanApi::loadDevice(VkDevice device, const Parts& parts) {
 #define SL_LOAD(name) require(name, vkGetDeviceProcAddr(device, #name), #name);
   SL_VULKAN_DEVICE_FUNCTIONS(SL_LOAD)
-  if (acceleration_structures) {
+  if (parts.structures) {
     SL_VULKAN_STRUCTURE_FUNCTIONS(SL_LOAD)
   }
-  if (ray_tracing_pipelines) {
+  if (parts.pipelines) {
     SL_VULKAN_PIPELINE_FUNCTIONS(SL_LOAD)
+  }
+  if (parts.meshes) {
+    SL_VULKAN_MESH_FUNCTIONS(SL_LOAD)
   }
 #undef SL_LOAD
 }

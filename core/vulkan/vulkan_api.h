@@ -48,6 +48,11 @@ namespace sightline {
   X(vkDestroyQueryPool)               \
   X(vkGetQueryPoolResults)            \
   X(vkCmdResetQueryPool)              \
+  X(vkResetQueryPool)                 \
+  X(vkCmdBeginQuery)                  \
+  X(vkCmdEndQuery)                    \
+  X(vkCmdWriteTimestamp)              \
+  X(vkGetFenceStatus)                 \
   X(vkCmdPipelineBarrier)             \
   X(vkCmdFillBuffer)                  \
   X(vkCmdUpdateBuffer)                \
@@ -69,7 +74,16 @@ namespace sightline {
   X(vkCmdBeginRenderPass)             \
   X(vkCmdEndRenderPass)               \
   X(vkCmdNextSubpass)                 \
+  X(vkCmdSetViewport)                 \
+  X(vkCmdSetScissor)                  \
+  X(vkCmdDraw)                        \
+  X(vkCmdDrawIndexed)                 \
   X(vkCmdDrawIndirect)                \
+  X(vkCmdDrawIndexedIndirect)         \
+  X(vkCmdDrawIndirectCount)           \
+  X(vkCmdDrawIndexedIndirectCount)    \
+  X(vkCmdBindIndexBuffer)             \
+  X(vkCmdDispatchIndirect)            \
   X(vkCmdCopyImageToBuffer)
 // Only with VK_KHR_acceleration_structure.
 #define SL_VULKAN_STRUCTURE_FUNCTIONS(X)        \
@@ -83,6 +97,8 @@ namespace sightline {
 #define SL_VULKAN_PIPELINE_FUNCTIONS(X) \
   X(vkCreateRayTracingPipelinesKHR)     \
   X(vkGetRayTracingShaderGroupHandlesKHR) X(vkCmdTraceRaysKHR)
+// Only with VK_EXT_mesh_shader.
+#define SL_VULKAN_MESH_FUNCTIONS(X) X(vkCmdDrawMeshTasksIndirectEXT)
 
 /// The functions, by their names. The loader library (libvulkan.so.1) is opened at run time, so that the
 /// program starts where there is none.
@@ -94,13 +110,18 @@ struct VulkanApi {
   SL_VULKAN_DEVICE_FUNCTIONS(SL_MEMBER)
   SL_VULKAN_STRUCTURE_FUNCTIONS(SL_MEMBER)
   SL_VULKAN_PIPELINE_FUNCTIONS(SL_MEMBER)
+  SL_VULKAN_MESH_FUNCTIONS(SL_MEMBER)
 #undef SL_MEMBER
 
   /// Opens the loader. Throws Error where there is none.
   void loadLoader();
+  /// What a device is made with besides what all have.
+  struct Parts {
+    bool structures = false, pipelines = false, meshes = false;
+  };
   /// Throw Error that names the first function that is missing.
   void loadInstance(VkInstance instance);
-  void loadDevice(VkDevice device, bool acceleration_structures, bool ray_tracing_pipelines);
+  void loadDevice(VkDevice device, const Parts& parts);
 };
 
 /// Throws Error that names the call and the code, if it is not VK_SUCCESS.

@@ -22,6 +22,10 @@ double mebibytes(uint64_t bytes) {
   return double(bytes) / 1048576.0;
 }
 
+bool isForShaders(VulkanMemory memory) {
+  return memory == VulkanMemory::kDevice || memory == VulkanMemory::kShared;
+}
+
 /// Families of the queue for everything that is needed and, if there is one that does nothing else, of the
 /// queue for copies.
 std::vector<uint32_t> chooseFamilies(const std::vector<VkQueueFlags>& queues, VkQueueFlags needed) {
@@ -106,7 +110,8 @@ void VulkanContext::createDevice(const VulkanNeeds& needs) {
   info.enabledExtensionCount = static_cast<uint32_t>(extensions.size());
   info.ppEnabledExtensionNames = extensions.data();
   checkVk(api_.vkCreateDevice(choice_.physical, &info, nullptr, &device_), "vkCreateDevice");
-  api_.loadDevice(device_, has(VulkanFeature::kStructures), has(VulkanFeature::kPipelines));
+  api_.loadDevice(device_, {has(VulkanFeature::kStructures), has(VulkanFeature::kPipelines),
+                            has(VulkanFeature::kMeshShaders)});
   api_.vkGetDeviceQueue(device_, families_.front(), 0, &queue_);
   api_.vkGetDeviceQueue(device_, families_.back(), 0, &transfer_queue_);
 }
@@ -134,6 +139,7 @@ void VulkanContext::readLimits() {
   limits_.draws = general.maxDrawIndirectCount;
   limits_.image_side =
       std::min({general.maxImageDimension2D, general.maxFramebufferWidth, general.maxFramebufferHeight});
+  limits_.timestamp_ns = general.timestampPeriod;
   limits_.handle_bytes = pipelines.shaderGroupHandleSize;
   limits_.table_alignment = pipelines.shaderGroupBaseAlignment;
 }
@@ -171,7 +177,7 @@ VulkanMemoryBlock VulkanContext::allocate(uint64_t bytes, const VkMemoryRequirem
   auto flags = vkStruct<VkMemoryAllocateFlagsInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO);
   flags.flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT;
   auto allocate = vkStruct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
-  const bool addressed = memory == VulkanMemory::kDevice && has(VulkanFeature::kAddresses);
+  const bool addressed = isForShaders(memory) && has(VulkanFeature::kAddresses);
   if (addressed) allocate.pNext = &flags;
   allocate.allocationSize = requirements.size;
   allocate.memoryTypeIndex = memoryType(requirements.memoryTypeBits, memory);
@@ -203,8 +209,9 @@ VulkanBuffer VulkanContext::buffer(uint64_t bytes, const VulkanMemoryUse& use, V
   auto info = vkStruct<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
   info.size = bytes;
   info.usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
-  if (memory == VulkanMemory::kDevice) {
-    info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT;
+  if (isForShaders(memory)) {
+    info.usage |= VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
+                  VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
     if (has(VulkanFeature::kAddresses)) info.usage |= VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT;
     if (has(VulkanFeature::kStructures)) {
       info.usage |= VK_BUFFER_USAGE_ACCELERATION_STRUCTURE_STORAGE_BIT_KHR |
@@ -230,7 +237,8 @@ VulkanBuffer VulkanContext::buffer(uint64_t bytes, const VulkanMemoryUse& use, V
   if (memory != VulkanMemory::kDevice) {
     checkVk(api_.vkMapMemory(device_, result.memory_.get(), 0, VK_WHOLE_SIZE, 0, &result.mapped_),
             "vkMapMemory");
-  } else if (has(VulkanFeature::kAddresses)) {
+  }
+  if (isForShaders(memory) && has(VulkanFeature::kAddresses)) {
     auto of = vkStruct<VkBufferDeviceAddressInfo>(VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO);
     of.buffer = handle;
     result.address_ = api_.vkGetBufferDeviceAddress(device_, &of);

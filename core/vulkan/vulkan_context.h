@@ -42,6 +42,7 @@ class VulkanHandle {
 enum class VulkanMemory {
   kDevice,    ///< device-local: everything that shaders work on
   kUpload,    ///< host-visible, written by the host in one go
+  kShared,    ///< the same, and shaders read it: for what is little and read once
   kReadback,  ///< host-visible and cached, read by the host
 };
 
@@ -80,7 +81,7 @@ class VulkanBuffer {
   uint64_t bytes() const { return bytes_; }
   /// For shaders and for the building of acceleration structures; 0 without VulkanFeature::kAddresses.
   VkDeviceAddress address() const { return address_; }
-  /// kUpload and kReadback only; coherent.
+  /// Of all but kDevice; coherent.
   void* mapped() const { return mapped_; }
 
  private:
@@ -103,6 +104,7 @@ struct VulkanLimits {
   uint32_t image_side = 0;       ///< pixels of an image that can be drawn into
   uint32_t handle_bytes = 0;     ///< shader group handle
   uint32_t table_alignment = 0;  ///< of the parts of a shader binding table
+  double timestamp_ns = 0;       ///< nanoseconds of a step
 };
 
 /// A device with its queues. Not thread-safe. Everything throws Error with the name of the call that failed.
@@ -134,6 +136,8 @@ class VulkanContext {
   uint32_t queueFamily() const { return families_.front(); }
   /// What queue() can do.
   VkQueueFlags queueFlags() const { return choice_.abilities.queues[families_.front()]; }
+  /// Whether commands on queue() can write the time.
+  bool hasTimestamps() const { return choice_.abilities.timestamp_bits[families_.front()] > 0; }
   /// A queue of a family that only copies, where there is one, else the same as queue().
   VkQueue transferQueue() const { return transfer_queue_; }
   uint32_t transferFamily() const { return families_.back(); }

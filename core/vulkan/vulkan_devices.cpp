@@ -35,7 +35,10 @@ VulkanAbilities abilitiesOf(const VulkanApi& api, VkPhysicalDevice device, uint3
   api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   api.vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  for (const VkQueueFamilyProperties& family : families) abilities.queues.push_back(family.queueFlags);
+  for (const VkQueueFamilyProperties& family : families) {
+    abilities.queues.push_back(family.queueFlags);
+    abilities.timestamp_bits.push_back(family.timestampValidBits);
+  }
   return abilities;
 }
 

@@ -3,15 +3,14 @@
 namespace sightline {
 
 VulkanImage::VulkanImage(const VulkanContext& context, VkFormat format, VkImageUsageFlags usage,
-                         VkImageAspectFlags aspect, uint32_t resolution, uint32_t layers,
-                         const VulkanMemoryUse& use) {
+                         VkImageAspectFlags aspect, const VulkanImageSize& size, const VulkanMemoryUse& use) {
   const VulkanApi& api = context.api();
   auto info = vkStruct<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
   info.imageType = VK_IMAGE_TYPE_2D;
   info.format = format;
-  info.extent = {resolution, resolution, 1};
+  info.extent = {size.width, size.height, 1};
   info.mipLevels = 1;
-  info.arrayLayers = layers;
+  info.arrayLayers = size.layers;
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.tiling = VK_IMAGE_TILING_OPTIMAL;
   info.usage = usage;
@@ -29,7 +28,7 @@ VulkanImage::VulkanImage(const VulkanContext& context, VkFormat format, VkImageU
   view_info.image = image;
   view_info.viewType = VK_IMAGE_VIEW_TYPE_2D_ARRAY;
   view_info.format = format;
-  view_info.subresourceRange = {aspect, 0, 1, 0, layers};
+  view_info.subresourceRange = {aspect, 0, 1, 0, size.layers};
   VkImageView view = VK_NULL_HANDLE;
   checkVk(api.vkCreateImageView(context.device(), &view_info, nullptr, &view), "vkCreateImageView");
   view_ = {context, view, [](const VulkanContext& c, VkImageView handle) {

@@ -29,6 +29,12 @@ const Description& descriptionOf(VulkanFeature feature) {
       {{}, "images of several views", "multiview"},
       {{}, "clip distances in shaders", "shaderClipDistance"},
       {{}, "lists of draws", "multiDrawIndirect"},
+      {{}, "lists of draws with their length", "drawIndirectCount"},
+      {{}, "lists of draws of any instance", "drawIndirectFirstInstance"},
+      {{}, "queries that the host resets", "hostQueryReset"},
+      {{}, "fragment shaders that write to buffers", "fragmentStoresAndAtomics"},
+      {{}, "blending in one image of several", "independentBlend"},
+      {{VK_EXT_MESH_SHADER_EXTENSION_NAME}, "mesh shaders", "meshShader"},
   };
   return kDescriptions[uint32_t(feature)];
 }
@@ -107,7 +113,9 @@ VulkanFeatureChain::VulkanFeatureChain(const std::set<std::string, std::less<>>&
       pipelines_(vkStruct<VkPhysicalDeviceRayTracingPipelineFeaturesKHR>(
           VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_TRACING_PIPELINE_FEATURES_KHR)),
       queries_(vkStruct<VkPhysicalDeviceRayQueryFeaturesKHR>(
-          VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR)) {
+          VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_RAY_QUERY_FEATURES_KHR)),
+      meshes_(vkStruct<VkPhysicalDeviceMeshShaderFeaturesEXT>(
+          VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_FEATURES_EXT)) {
   features_.pNext = &core11_;
   core11_.pNext = &core12_;
   const auto chain = [&](auto& its, const char* extension) {
@@ -116,6 +124,7 @@ VulkanFeatureChain::VulkanFeatureChain(const std::set<std::string, std::less<>>&
   chain(structures_, VK_KHR_ACCELERATION_STRUCTURE_EXTENSION_NAME);
   chain(pipelines_, VK_KHR_RAY_TRACING_PIPELINE_EXTENSION_NAME);
   chain(queries_, VK_KHR_RAY_QUERY_EXTENSION_NAME);
+  chain(meshes_, VK_EXT_MESH_SHADER_EXTENSION_NAME);
 }
 
 VkBool32& VulkanFeatureChain::at(VulkanFeature feature) {
@@ -138,6 +147,18 @@ VkBool32& VulkanFeatureChain::at(VulkanFeature feature) {
       return core11_.multiview;
     case VulkanFeature::kClipDistances:
       return features_.features.shaderClipDistance;
+    case VulkanFeature::kDrawCount:
+      return core12_.drawIndirectCount;
+    case VulkanFeature::kFirstInstance:
+      return features_.features.drawIndirectFirstInstance;
+    case VulkanFeature::kQueryReset:
+      return core12_.hostQueryReset;
+    case VulkanFeature::kFragmentStores:
+      return features_.features.fragmentStoresAndAtomics;
+    case VulkanFeature::kIndependentBlend:
+      return features_.features.independentBlend;
+    case VulkanFeature::kMeshShaders:
+      return meshes_.meshShader;
     case VulkanFeature::kMultiDraw:
       break;
   }

@@ -21,9 +21,15 @@ enum class VulkanFeature {
   kFloat64,       ///< in shaders
   kMultiview,     ///< several images from one draw
   kClipDistances,
-  kMultiDraw,  ///< lists of draws in a buffer
+  kMultiDraw,         ///< lists of draws in a buffer
+  kDrawCount,         ///< of lists whose length is in a buffer, too
+  kFirstInstance,     ///< draws in a buffer that do not start at instance 0
+  kQueryReset,        ///< by the host
+  kFragmentStores,    ///< to buffers
+  kIndependentBlend,  ///< of images that are drawn together
+  kMeshShaders,
 };
-inline constexpr uint32_t kVulkanFeatures = uint32_t(VulkanFeature::kMultiDraw) + 1;
+inline constexpr uint32_t kVulkanFeatures = uint32_t(VulkanFeature::kMeshShaders) + 1;
 
 /// SPIR-V of the shader of a name, which must last as long as the program. May throw.
 using VulkanShaders = std::span<const uint32_t> (*)(std::string_view name);
@@ -43,7 +49,8 @@ struct VulkanAbilities {
   uint32_t version = 0;
   std::set<std::string, std::less<>> extensions;
   std::set<VulkanFeature> features;
-  std::vector<VkQueueFlags> queues;  ///< by family
+  std::vector<VkQueueFlags> queues;      ///< by family
+  std::vector<uint32_t> timestamp_bits;  ///< of each family; 0: it knows no time
 };
 
 /// Extensions that the feature is one of.
@@ -76,6 +83,7 @@ class VulkanFeatureChain {
   VkPhysicalDeviceAccelerationStructureFeaturesKHR structures_;
   VkPhysicalDeviceRayTracingPipelineFeaturesKHR pipelines_;
   VkPhysicalDeviceRayQueryFeaturesKHR queries_;
+  VkPhysicalDeviceMeshShaderFeaturesEXT meshes_;
 };
 
 }  // namespace sightline

@@ -12,8 +12,9 @@ namespace sightline {
 VulkanHandle<VkShaderModule> shaderModule(const VulkanContext& context, const std::string& name);
 /// Its main function as a stage.
 VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderModule module);
-/// A layout of push constants for these stages and nothing else.
-VulkanHandle<VkPipelineLayout> pushLayout(const VulkanContext& context, VkShaderStageFlags stages);
+/// A layout of so many bytes of push constants for these stages and nothing else.
+VulkanHandle<VkPipelineLayout> pushLayout(const VulkanContext& context, VkShaderStageFlags stages,
+                                          uint32_t bytes = sizeof(VulkanPush));
 void destroyPipeline(const VulkanContext& context, VkPipeline pipeline);
 
 /// A program that runs one work item an invocation: a tracing stage, or a compute shader over a list.

@@ -83,10 +83,11 @@ void VulkanRaster::createImages() {
                             {"pixels of a hemicube", remedy});
   ids_ =
       VulkanImage(context_, kIdFormat, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
-                  VK_IMAGE_ASPECT_COLOR_BIT, resolution_, kHemicubeViews, {"images of a hemicube", remedy});
-  depth_ =
-      VulkanImage(context_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
-                  VK_IMAGE_ASPECT_DEPTH_BIT, resolution_, kHemicubeViews, {"depth of a hemicube", remedy});
+                  VK_IMAGE_ASPECT_COLOR_BIT, {resolution_, resolution_, kHemicubeViews},
+                  {"images of a hemicube", remedy});
+  depth_ = VulkanImage(context_, kDepthFormat, VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT,
+                       VK_IMAGE_ASPECT_DEPTH_BIT, {resolution_, resolution_, kHemicubeViews},
+                       {"depth of a hemicube", remedy});
 }
 
 void VulkanRaster::boundChunks(uint32_t triangles) {

@@ -1,0 +1,219 @@
+#include "core/draw/vulkan/command_ring.h"
+
+#include <algorithm>
+
+namespace sightline {
+namespace {
+
+constexpr size_t kFirstEntries = 64;
+constexpr uint32_t kTimes = 16;
+constexpr size_t kKeptFrames = 16;
+
+VulkanHandle<VkQueryPool> queryPool(const VulkanContext& context, VkQueryType type, uint32_t count) {
+  auto info = vkStruct<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
+  info.queryType = type;
+  info.queryCount = count;
+  VkQueryPool pool = VK_NULL_HANDLE;
+  checkVk(context.api().vkCreateQueryPool(context.device(), &info, nullptr, &pool), "vkCreateQueryPool");
+  return {context, pool, [](const VulkanContext& c, VkQueryPool handle) {
+            c.api().vkDestroyQueryPool(c.device(), handle, nullptr);
+          }};
+}
+
+}  // namespace
+
+CommandRing::CommandRing(const VulkanContext& context, DrawClock clock)
+    : context_(context), clock_(std::move(clock)) {
+  for (size_t i = 0; i < kFirstEntries; ++i) entries_.push_back(make());
+}
+
+CommandRing::~CommandRing() {
+  // Whatever it says: a lost device runs nothing any more.
+  for (const auto& entry : entries_) {
+    if (entry->running) {
+      context_.api().vkWaitForFences(context_.device(), 1, entry->fence.address(), VK_TRUE, UINT64_MAX);
+    }
+  }
+}
+
+std::unique_ptr<CommandRing::Entry> CommandRing::make() const {
+  const VulkanApi& api = context_.api();
+  auto entry = std::make_unique<Entry>();
+  auto pool_info = vkStruct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+  pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
+  pool_info.queueFamilyIndex = context_.queueFamily();
+  VkCommandPool pool = VK_NULL_HANDLE;
+  checkVk(api.vkCreateCommandPool(context_.device(), &pool_info, nullptr, &pool), "vkCreateCommandPool");
+  entry->pool = {context_, pool, [](const VulkanContext& c, VkCommandPool handle) {
+                   c.api().vkDestroyCommandPool(c.device(), handle, nullptr);
+                 }};
+  auto buffer_info = vkStruct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+  buffer_info.commandPool = pool;
+  buffer_info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+  buffer_info.commandBufferCount = 1;
+  checkVk(api.vkAllocateCommandBuffers(context_.device(), &buffer_info, &entry->commands),
+          "vkAllocateCommandBuffers");
+  const auto fence_info = vkStruct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+  VkFence fence = VK_NULL_HANDLE;
+  checkVk(api.vkCreateFence(context_.device(), &fence_info, nullptr, &fence), "vkCreateFence");
+  entry->fence = {context_, fence, [](const VulkanContext& c, VkFence handle) {
+                    c.api().vkDestroyFence(c.device(), handle, nullptr);
+                  }};
+  if (context_.hasTimestamps()) entry->times = queryPool(context_, VK_QUERY_TYPE_TIMESTAMP, kTimes);
+  return entry;
+}
+
+void CommandRing::reserveQueries(Entry& entry, uint32_t queries) const {
+  if (queries > entry.query_capacity) {
+    entry.query_capacity = std::max(queries, 2 * entry.query_capacity);
+    entry.queries = VulkanHandle<VkQueryPool>();
+    entry.queries = queryPool(context_, VK_QUERY_TYPE_OCCLUSION, entry.query_capacity);
+  }
+  if (queries > 0) context_.api().vkResetQueryPool(context_.device(), entry.queries.get(), 0, queries);
+}
+
+void CommandRing::beginFrame(uint64_t frame) {
+  frame_ = frame;
+  cpu_ = {};
+}
+
+CommandRing::Entry& CommandRing::open(uint32_t queries, uint64_t box_bytes, uint64_t result_bytes) {
+  const VulkanApi& api = context_.api();
+  Entry* oldest = entries_.front().get();
+  if (oldest->running && api.vkGetFenceStatus(context_.device(), oldest->fence.get()) != VK_SUCCESS) {
+    entries_.push_front(make());
+  } else {
+    harvest(*oldest);
+  }
+  Entry& entry = *entries_.front();
+  std::rotate(entries_.begin(), entries_.begin() + 1, entries_.end());
+  reserveQueries(entry, queries);
+  if (entry.boxes.bytes() < box_bytes) {
+    entry.boxes = VulkanBuffer();
+    entry.boxes = context_.buffer(2 * box_bytes, "boxes of queries", VulkanMemory::kShared);
+  }
+  if (entry.results.bytes() < result_bytes) {
+    entry.results = VulkanBuffer();
+    entry.results = context_.buffer(result_bytes, "counts of a frame", VulkanMemory::kReadback);
+  }
+  entry.answers = std::make_shared<Answers>(queries, int8_t(-1));
+  entry.parts.clear();
+  entry.frame = frame_;
+  entry.serial = ++serial_;
+  entry.opened = now();
+  checkVk(api.vkResetCommandPool(context_.device(), entry.pool.get(), 0), "vkResetCommandPool");
+  auto info = vkStruct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  checkVk(api.vkBeginCommandBuffer(entry.commands, &info), "vkBeginCommandBuffer");
+  if (entry.times.get() != VK_NULL_HANDLE) {
+    api.vkResetQueryPool(context_.device(), entry.times.get(), 0, kTimes);
+    api.vkCmdWriteTimestamp(entry.commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, entry.times.get(), 0);
+  }
+  return entry;
+}
+
+void CommandRing::mark(Entry& entry, GpuPart part) {
+  if (entry.times.get() == VK_NULL_HANDLE || entry.parts.size() + 1 >= kTimes) return;
+  entry.parts.push_back(part);
+  context_.api().vkCmdWriteTimestamp(entry.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, entry.times.get(),
+                                     uint32_t(entry.parts.size()));
+}
+
+void CommandRing::submit(Entry& entry) {
+  const VulkanApi& api = context_.api();
+  checkVk(api.vkEndCommandBuffer(entry.commands), "vkEndCommandBuffer");
+  const double recorded = now();
+  checkVk(api.vkResetFences(context_.device(), 1, entry.fence.address()), "vkResetFences");
+  auto info = vkStruct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+  info.commandBufferCount = 1;
+  info.pCommandBuffers = &entry.commands;
+  checkVk(api.vkQueueSubmit(context_.queue(), 1, &info, entry.fence.get()), "vkQueueSubmit");
+  entry.running = true;
+  cpu_.record += recorded - entry.opened;
+  cpu_.submit += now() - recorded;
+}
+
+bool CommandRing::arrived(Entry& entry, uint64_t serial, Answers& answers, uint32_t query) {
+  if (answers[query] >= 0 || entry.serial != serial) return true;  // who was taken anew has left its answers
+  uint32_t samples = 0;
+  const VkResult code = context_.api().vkGetQueryPoolResults(context_.device(), entry.queries.get(), query, 1,
+                                                             sizeof samples, &samples, sizeof samples, 0);
+  if (code == VK_NOT_READY) return false;
+  checkVk(code, "vkGetQueryPoolResults");
+  answers[query] = samples > 0;
+  return true;
+}
+
+bool CommandRing::answer(Entry& entry, uint64_t serial, Answers& answers, uint32_t query) {
+  if (!arrived(entry, serial, answers, query)) {
+    const double start = now();
+    ++waits_;
+    uint32_t samples = 0;
+    checkVk(
+        context_.api().vkGetQueryPoolResults(context_.device(), entry.queries.get(), query, 1, sizeof samples,
+                                             &samples, sizeof samples, VK_QUERY_RESULT_WAIT_BIT),
+        "vkGetQueryPoolResults");
+    answers[query] = samples > 0;
+    cpu_.wait += now() - start;
+  }
+  return answers[query] > 0;
+}
+
+void CommandRing::wait(Entry& entry) {
+  if (!entry.running) return;
+  const double start = now();
+  checkVk(context_.api().vkWaitForFences(context_.device(), 1, entry.fence.address(), VK_TRUE, UINT64_MAX),
+          "vkWaitForFences");
+  cpu_.wait += now() - start;
+  harvest(entry);
+}
+
+void CommandRing::drain() {
+  for (const auto& entry : entries_) wait(*entry);
+}
+
+void CommandRing::harvest(Entry& entry) {
+  if (!entry.running) return;
+  entry.running = false;
+  const VulkanApi& api = context_.api();
+  if (const auto count = uint32_t(entry.answers->size()); count > 0) {
+    std::vector<uint32_t> samples(count);
+    checkVk(api.vkGetQueryPoolResults(context_.device(), entry.queries.get(), 0, count, count * 4,
+                                      samples.data(), 4, 0),
+            "vkGetQueryPoolResults");
+    for (uint32_t i = 0; i < count; ++i) (*entry.answers)[i] = samples[i] > 0;
+  }
+  if (entry.parts.empty()) return;
+  std::array<uint64_t, kTimes> ticks{};
+  const auto count = uint32_t(entry.parts.size() + 1);
+  checkVk(api.vkGetQueryPoolResults(context_.device(), entry.times.get(), 0, count, count * 8, ticks.data(),
+                                    8, VK_QUERY_RESULT_64_BIT),
+          "vkGetQueryPoolResults");
+  auto frame = std::find_if(frames_.begin(), frames_.end(),
+                            [&](const FrameTicks& f) { return f.frame == entry.frame; });
+  if (frame == frames_.end()) {
+    frames_.push_back({entry.frame});
+    if (frames_.size() > kKeptFrames) frames_.pop_front();
+    frame = frames_.end() - 1;
+  }
+  frame->first = frame->any ? std::min(frame->first, ticks[0]) : ticks[0];
+  frame->last = std::max(frame->last, ticks[count - 1]);
+  frame->any = true;
+  for (uint32_t i = 1; i < count; ++i) frame->part[size_t(entry.parts[i - 1])] += ticks[i] - ticks[i - 1];
+}
+
+GpuTimes CommandRing::gpuTimes(uint64_t frame) {
+  for (const auto& entry : entries_) {
+    if (entry->frame == frame) wait(*entry);
+  }
+  GpuTimes times;
+  for (const FrameTicks& ticks : frames_) {
+    if (ticks.frame != frame) continue;
+    const double ms = context_.limits().timestamp_ns * 1e-6;
+    times.frame = times.rest = double(ticks.last - ticks.first) * ms;
+    for (size_t i = 0; i < kGpuParts; ++i) times.rest -= times.part[i] = double(ticks.part[i]) * ms;
+  }
+  return times;
+}
+
+}  // namespace sightline

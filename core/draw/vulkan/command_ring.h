@@ -1,0 +1,102 @@
+#pragma once
+#include <array>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "core/vulkan/vulkan_context.h"
+
+namespace sightline {
+
+/// What a GPU's time in a frame goes to.
+enum class GpuPart { draw, query, pyramid, cull };
+inline constexpr size_t kGpuParts = 4;
+
+/// A frame's time on the GPU, in milliseconds; all 0 where the device knows no time.
+struct GpuTimes {
+  std::array<double, kGpuParts> part{};  ///< by GpuPart
+  double rest = 0;                       ///< between submits, and what belongs to no part
+  double frame = 0;                      ///< from the first command to the last
+};
+
+/// The processor's time in a frame in milliseconds, without what the method itself takes; all 0 without a
+/// clock.
+struct CpuTimes {
+  double record = 0, submit = 0, wait = 0;
+};
+
+/// Milliseconds from whenever; empty: no time is measured.
+using DrawClock = std::function<double()>;
+
+/// Command buffers that are used in turn, each with what a submit takes: a fence, times, queries, boxes. The
+/// oldest is taken if it has run, else there will be one more, so that nobody waits for one.
+class CommandRing {
+ public:
+  /// Answers of a submit's queries: 1, 0, or -1 while unknown.
+  using Answers = std::vector<int8_t>;
+
+  struct Entry {
+    VulkanHandle<VkCommandPool> pool;
+    VulkanHandle<VkFence> fence;
+    VulkanHandle<VkQueryPool> times, queries;
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    VulkanBuffer boxes;    ///< kShared
+    VulkanBuffer results;  ///< kReadback
+    uint32_t query_capacity = 0;
+    std::shared_ptr<Answers> answers;
+    std::vector<GpuPart> parts;  ///< that end at the times after the first
+    uint64_t frame = 0, serial = 0;
+    bool running = false;
+    double opened = 0;
+  };
+
+  CommandRing(const VulkanContext& context, DrawClock clock);
+  CommandRing(const CommandRing&) = delete;
+  CommandRing& operator=(const CommandRing&) = delete;
+  ~CommandRing();
+
+  void beginFrame(uint64_t frame);
+  /// An entry that records, with room for so many queries and bytes of boxes and results.
+  Entry& open(uint32_t queries, uint64_t box_bytes, uint64_t result_bytes);
+  /// What was recorded since the last mark, or the start, belongs to the part.
+  void mark(Entry& entry, GpuPart part);
+  void submit(Entry& entry);
+
+  /// Whether the answer of an entry's query is there; never waits. serial: of the submit.
+  bool arrived(Entry& entry, uint64_t serial, Answers& answers, uint32_t query);
+  /// Waits for it.
+  bool answer(Entry& entry, uint64_t serial, Answers& answers, uint32_t query);
+  void wait(Entry& entry);
+  /// Waits until all has run.
+  void drain();
+
+  /// Of one of the last few frames; waits until it has run.
+  GpuTimes gpuTimes(uint64_t frame);
+  /// Since beginFrame.
+  const CpuTimes& cpuTimes() const { return cpu_; }
+  size_t size() const { return entries_.size(); }
+  uint64_t waits() const { return waits_; }  ///< for answers, since it was made
+
+ private:
+  struct FrameTicks {
+    uint64_t frame = 0, first = 0, last = 0;
+    std::array<uint64_t, kGpuParts> part{};
+    bool any = false;
+  };
+
+  std::unique_ptr<Entry> make() const;
+  double now() const { return clock_ ? clock_() : 0; }
+  void reserveQueries(Entry& entry, uint32_t queries) const;
+  /// Keeps what the entry's queries and times say.
+  void harvest(Entry& entry);
+
+  const VulkanContext& context_;
+  DrawClock clock_;
+  std::deque<std::unique_ptr<Entry>> entries_;  ///< the oldest first
+  std::deque<FrameTicks> frames_;
+  CpuTimes cpu_;
+  uint64_t frame_ = 0, serial_ = 0, waits_ = 0;
+};
+
+}  // namespace sightline

@@ -1,0 +1,341 @@
+#include "core/draw/vulkan/gpu_culling.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "core/base/error.h"
+#include "core/shared/pyramid.h"
+
+namespace sightline {
+namespace {
+
+// Lists: opaque units in both passes, masked and blended ones; and all opaque units.
+constexpr uint32_t kEarly = 0, kLate = 1, kMasked = 2, kBlended = 3, kAll = 4, kLists = 5;
+constexpr uint64_t kHeadBytes = uint64_t(kLists) * kHeadWords * 4;
+constexpr uint32_t kUnitBoxVertices = 14;  // of vk_shaders/box.vert
+constexpr uint64_t kUpdateBytes = 65536;   // of vkCmdUpdateBuffer
+
+constexpr VkPipelineStageFlags kShaderStages =
+    VK_PIPELINE_STAGE_ALL_GRAPHICS_BIT | VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+
+uint32_t blocksOf(uint32_t units) {
+  return (units + kCullBlock - 1) / kCullBlock;
+}
+
+void updateBuffer(const VulkanContext& context, VkCommandBuffer commands, const VulkanBuffer& to,
+                  const void* data, uint64_t bytes) {
+  for (uint64_t first = 0; first < bytes; first += kUpdateBytes) {
+    context.api().vkCmdUpdateBuffer(commands, to.get(), first, std::min(kUpdateBytes, bytes - first),
+                                    static_cast<const char*>(data) + first);
+  }
+}
+
+}  // namespace
+
+GpuCulling::GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullingOptions& options)
+    : drawing_(drawing), method_(method), faults_(options.faults) {
+  const VulkanContext& context = drawing.context();
+  const auto refuse = [&](const std::string& why) {
+    throw Error(fmt::format("{} ({}) cannot cull by {}: {}", context.info().id, context.info().name,
+                            method == GpuMethod::boxes ? "boxes"
+                            : method == GpuMethod::hiz ? "hiz"
+                                                       : "hiz-meshlets",
+                            why));
+  };
+  if (const std::string why = whyNotMethod(context.abilities(), method); !why.empty()) refuse(why);
+  const Drawables& drawables = drawing.mesh().drawables();
+  const bool meshlets = method == GpuMethod::hizMeshlets;
+  units_ = meshlets ? meshletUnits(drawing.mesh().scene(), drawables) : drawableUnits(drawables);
+  meshes_ = meshlets && options.mesh_shaders && context.has(VulkanFeature::kMeshShaders);
+  if (unitCount() > context.limits().draws || blocksOf(unitCount()) > context.limits().launch_groups) {
+    refuse(fmt::format("{} draws are more than the {} of one list; give a larger --split", unitCount(),
+                       context.limits().draws));
+  }
+  createBuffers();
+}
+
+void GpuCulling::createBuffers() {
+  const VulkanContext& context = drawing_.context();
+  const uint64_t units = std::max<uint64_t>(units_.units.size(), 1);
+  const auto make = [&](uint64_t bytes, const char* what) {
+    return context.buffer(bytes, {what, "a larger --split"});
+  };
+  unit_buffer_ = make(units * sizeof(CullUnit), "boxes of what is drawn");
+  states_ = make(units * 4, "states of what is drawn");
+  block_counts_ = make(uint64_t(blocksOf(uint32_t(units))) * kLists * 4, "counts of what is drawn");
+  draws_ = make(units * kDrawWords * 4, "lists of draws");
+  heads_ = make(kHeadBytes, "lists of draws");
+  candidates_ = make((drawing_.mesh().drawables().list.size() / 32 + 1) * 4, "candidates");
+  const Range blended = range(AlphaKind::blended);
+  order_ = make(std::max<uint64_t>(blended.count, 1) * 4, "order of glass");
+  VulkanUpload upload(context);
+  // Of the list of all opaque units, which stays; the others' are written in each frame.
+  std::array<uint32_t, kLists * kHeadWords> heads{};
+  const uint32_t all = range(AlphaKind::opaque).count;
+  uint32_t* head = &heads[kAll * kHeadWords];
+  head[0] = all;
+  head[1] = std::min(all, kMeshletRow);
+  head[2] = (all + kMeshletRow - 1) / kMeshletRow;
+  head[3] = 1;
+  upload.write(heads_, heads.data(), kHeadBytes);
+  upload.write(unit_buffer_, units_.units.data(), units_.units.size() * sizeof(CullUnit));
+  if (method_ == GpuMethod::hizMeshlets) {
+    if (meshes_) {
+      meshlets_ = make(std::max<uint64_t>(units_.words.size(), 1) * 4, "meshlets");
+      upload.write(meshlets_, units_.words.data(), units_.words.size() * 4);
+      // The units of a list, of both passes in turn; behind them all opaque ones.
+      const Range opaque = range(AlphaKind::opaque);
+      std::vector<uint32_t> listed(uint64_t(opaque.count) * 2 + 1);
+      for (uint32_t i = 0; i < opaque.count; ++i) listed[opaque.count + i] = i;
+      listed_ = make(listed.size() * 4, "lists of meshlets");
+      upload.write(listed_, listed.data(), listed.size() * 4);
+    } else {
+      indices_ = make(std::max<uint64_t>(units_.indices.size(), 1) * 4, "triangles of meshlets");
+      upload.write(indices_, units_.indices.data(), units_.indices.size() * 4);
+    }
+    upload.finish();
+    units_.words = {};
+    units_.indices = {};
+  }
+  upload.finish();
+  launch_ = make(sizeof numbers_, "a method's launch");
+  numbers_.units = unit_buffer_.address();
+  numbers_.states = states_.address();
+  numbers_.block_counts = block_counts_.address();
+  numbers_.draws = draws_.address();
+  numbers_.listed = listed_.address();
+  numbers_.heads = heads_.address();
+  numbers_.meshlets = meshlets_.address();
+  numbers_.order = order_.address();
+  numbers_.blocks = blocksOf(uint32_t(units));
+  numbers_.shrink = float(faults_.shrink_pixels);
+}
+
+void GpuCulling::between(VkCommandBuffer commands) const {
+  drawing_.barrier(
+      commands, kShaderStages, VK_ACCESS_SHADER_WRITE_BIT, kShaderStages,
+      VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+}
+
+void GpuCulling::prepare(VkCommandBuffer commands, std::span<const uint32_t> candidates, bool restricted,
+                         bool changed) {
+  const VulkanContext& context = drawing_.context();
+  const uint64_t texels = levelStart(drawing_.camera().size.x, drawing_.camera().size.y,
+                                     pyramidLevels(drawing_.camera().size.x, drawing_.camera().size.y));
+  if (method_ != GpuMethod::boxes && texels > pyramid_texels_) {
+    drawing_.ring().drain();
+    pyramid_ = VulkanBuffer();
+    pyramid_ = context.buffer(texels * 4, {"pyramid of depth", "a smaller resolution"});
+    pyramid_texels_ = texels;
+  }
+  numbers_.pyramid = pyramid_.address();
+  numbers_.candidates = restricted ? candidates_.address() : 0;
+  drawing_.barrier(commands, kShaderStages | VK_PIPELINE_STAGE_TRANSFER_BIT,
+                   VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                   VK_ACCESS_TRANSFER_WRITE_BIT);
+  updateBuffer(context, commands, launch_, &numbers_, sizeof numbers_);
+  context.api().vkCmdFillBuffer(commands, heads_.get(), 0, kAll * kHeadWords * 4, 0);
+  if (forget_) context.api().vkCmdFillBuffer(commands, states_.get(), 0, VK_WHOLE_SIZE, 0);
+  forget_ = false;
+  if (restricted && (changed || !restricted_)) {
+    std::vector<uint32_t> bits(drawing_.mesh().drawables().list.size() / 32 + 1);
+    for (const uint32_t drawable : candidates) bits[drawable / 32] |= 1u << drawable % 32;
+    updateBuffer(context, commands, candidates_, bits.data(), bits.size() * 4);
+  }
+  restricted_ = restricted;
+  orderBlended(commands);
+  drawing_.barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, kShaderStages,
+                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+}
+
+void GpuCulling::orderBlended(VkCommandBuffer commands) {
+  const Range blended = range(AlphaKind::blended);
+  if (blended.count == 0) return;
+  const Camera& camera = drawing_.camera();
+  const glm::dvec3 eye(xyz3(camera.eye)), forward(xyz3(camera.forward));
+  std::vector<std::pair<double, uint32_t>> distances(blended.count);
+  for (uint32_t i = 0; i < blended.count; ++i) {
+    const CullUnit& unit = units_.units[blended.first + i];
+    const glm::dvec3 centre = (glm::dvec3(unit.low) + glm::dvec3(unit.high)) * 0.5 - eye;
+    distances[i] = {centre.x * forward.x + centre.y * forward.y + centre.z * forward.z, blended.first + i};
+  }
+  std::sort(distances.rbegin(), distances.rend());
+  std::vector<uint32_t> order;
+  for (const auto& [distance, unit] : distances) order.push_back(unit);
+  updateBuffer(drawing_.context(), commands, order_, order.data(), order.size() * 4);
+}
+
+void GpuCulling::test(VkCommandBuffer commands, Range range, uint32_t list, uint32_t test) {
+  if (range.count == 0) return;
+  drawing_.programs().run(commands, "cull_units.comp",
+                          drawing_.push(address(), {range.first, range.count, list, test}),
+                          blocksOf(range.count));
+}
+
+void GpuCulling::writeDraws(VkCommandBuffer commands, Range range, uint32_t list, uint32_t kind) {
+  if (range.count == 0) return;
+  drawing_.programs().run(commands, "write_draws.comp",
+                          drawing_.push(address(), {range.first, range.count, list, kind}),
+                          blocksOf(range.count));
+}
+
+void GpuCulling::drawOpaque(VkCommandBuffer commands, uint32_t list) {
+  const Range opaque = range(AlphaKind::opaque);
+  if (opaque.count == 0) return;
+  const VulkanApi& api = drawing_.context().api();
+  const uint64_t head = uint64_t(list) * kHeadWords * 4;
+  if (meshes_) {
+    drawing_.programs().bind(commands, DrawKind::meshlets,
+                             drawing_.push(address(), {list, list == kAll ? opaque.count : 0, 0, 0}));
+    api.vkCmdDrawMeshTasksIndirectEXT(commands, heads_.get(), head + 4, 1, 12);
+    return;
+  }
+  drawing_.programs().bind(commands, DrawKind::opaque, drawing_.push());
+  const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.mesh().indices();
+  api.vkCmdBindIndexBuffer(commands, indices.get(), 0, VK_INDEX_TYPE_UINT32);
+  api.vkCmdDrawIndexedIndirectCount(commands, draws_.get(), 0, heads_.get(), head, opaque.count,
+                                    kDrawWords * 4);
+}
+
+void GpuCulling::drawAll(VkCommandBuffer commands) {
+  const Range opaque = range(AlphaKind::opaque);
+  if (opaque.count == 0) return;
+  if (meshes_) return drawOpaque(commands, kAll);
+  drawing_.programs().bind(commands, DrawKind::opaque, drawing_.push());
+  const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.mesh().indices();
+  const VulkanApi& api = drawing_.context().api();
+  api.vkCmdBindIndexBuffer(commands, indices.get(), 0, VK_INDEX_TYPE_UINT32);
+  for (uint32_t i = opaque.first; i < opaque.first + opaque.count; ++i) {
+    const uvec4& run = units_.units[i].run;
+    api.vkCmdDrawIndexed(commands, 3 * run.y, 1, 3 * run.x, 0, run.z);
+  }
+}
+
+void GpuCulling::buildPyramid(VkCommandBuffer commands) {
+  const uint32_t width = drawing_.camera().size.x, height = drawing_.camera().size.y;
+  drawing_.barrier(commands, kShaderStages, 0, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+  drawing_.target().copy(drawing_.context(), commands, DrawTarget::Image::depth, pyramid_);
+  drawing_.barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, kShaderStages,
+                   VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+  for (uint32_t level = 0; level + 1 < pyramidLevels(width, height); level += 6) {
+    DrawPush push{pyramid_.address(), 0, {width, height, level, faults_.floor_levels ? 1u : 0u}};
+    drawing_.programs().run(commands, "pyramid.comp", push, (levelSize(width, level) + 63) / 64,
+                            (levelSize(height, level) + 63) / 64);
+    between(commands);
+  }
+}
+
+void GpuCulling::testByBoxes(CommandRing::Entry& entry) {
+  const Range all{0, unitCount()};
+  test(entry.commands, all, kLate, kTestAsk);
+  between(entry.commands);
+  drawing_.ring().mark(entry, GpuPart::cull);
+  drawing_.beginPass(entry);
+  drawing_.programs().bind(entry.commands, DrawKind::unit_box, drawing_.push(address()));
+  drawing_.context().api().vkCmdDraw(entry.commands, kUnitBoxVertices, all.count, 0, 0);
+  drawing_.endPass(entry);
+  between(entry.commands);
+  drawing_.ring().mark(entry, GpuPart::query);
+}
+
+void GpuCulling::testLate(CommandRing::Entry& entry) {
+  if (method_ == GpuMethod::boxes) {
+    testByBoxes(entry);
+  } else {
+    buildPyramid(entry.commands);
+    drawing_.ring().mark(entry, GpuPart::pyramid);
+  }
+  const uint32_t by = method_ == GpuMethod::boxes ? kTestBoxes : kTestPyramid;
+  test(entry.commands, range(AlphaKind::opaque), kLate, by);
+  test(entry.commands, range(AlphaKind::masked), kMasked, by);
+  test(entry.commands, range(AlphaKind::blended), kBlended, by);
+  between(entry.commands);
+  writeDraws(entry.commands, range(AlphaKind::opaque), kLate, meshes_ ? kDrawMeshlets : kDrawIndexed);
+  writeDraws(entry.commands, range(AlphaKind::masked), kMasked, kDrawPlain);
+  writeDraws(entry.commands, range(AlphaKind::blended), kBlended, kDrawOrdered);
+  between(entry.commands);
+  drawing_.ring().mark(entry, GpuPart::cull);
+}
+
+void GpuCulling::drawLate(CommandRing::Entry& entry) {
+  const VulkanApi& api = drawing_.context().api();
+  const Range masked = range(AlphaKind::masked), blended = range(AlphaKind::blended);
+  drawing_.beginPass(entry);
+  drawOpaque(entry.commands, kLate);
+  constexpr uint32_t kStride = kDrawWords * 4;
+  if (masked.count > 0) {
+    drawing_.programs().bind(entry.commands, DrawKind::masked, drawing_.push());
+    api.vkCmdDrawIndirectCount(entry.commands, draws_.get(), uint64_t(masked.first) * kStride, heads_.get(),
+                               uint64_t(kMasked) * kHeadWords * 4, masked.count, kStride);
+  }
+  if (blended.count > 0) {
+    drawing_.programs().bind(entry.commands, DrawKind::glass, drawing_.push());
+    api.vkCmdDrawIndirect(entry.commands, draws_.get(), uint64_t(blended.first) * kStride, blended.count,
+                          kStride);
+  }
+  drawing_.endPass(entry);
+  drawing_.ring().mark(entry, GpuPart::draw);
+}
+
+void GpuCulling::drawFrame(const Camera& camera) {
+  drawFrame(camera, {}, false);
+}
+
+void GpuCulling::drawFrame(const Camera& camera, std::span<const uint32_t> candidates, bool changed) {
+  drawing_.beginFrame(camera);
+  CommandRing::Entry& entry = drawing_.open(0, 0, kHeadBytes);
+  prepare(entry.commands, candidates, candidates.data() != nullptr, changed);
+  const Range opaque = range(AlphaKind::opaque);
+  test(entry.commands, opaque, kEarly, kTestBefore);
+  between(entry.commands);
+  writeDraws(entry.commands, opaque, kEarly, meshes_ ? kDrawMeshlets : kDrawIndexed);
+  between(entry.commands);
+  drawing_.ring().mark(entry, GpuPart::cull);
+  drawing_.beginPass(entry);
+  drawOpaque(entry.commands, kEarly);
+  drawing_.endPass(entry);
+  drawing_.ring().mark(entry, GpuPart::draw);
+  testLate(entry);
+  if (!faults_.no_second_pass) drawLate(entry);
+  drawing_.barrier(entry.commands, kShaderStages, VK_ACCESS_SHADER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                   VK_ACCESS_TRANSFER_READ_BIT);
+  const VkBufferCopy all{0, 0, kHeadBytes};
+  drawing_.context().api().vkCmdCopyBuffer(entry.commands, heads_.get(), entry.results.get(), 1, &all);
+  drawing_.barrier(entry.commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                   VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
+  drawing_.submit(entry);
+  drawing_.endFrame();
+  last_ = &entry;
+  last_serial_ = entry.serial;
+}
+
+FrameCounts GpuCulling::counts() {
+  FrameCounts counts;
+  if (last_ == nullptr || last_->serial != last_serial_) return counts;
+  drawing_.ring().wait(*last_);
+  const auto* heads = static_cast<const uint32_t*>(last_->results.mapped());
+  for (uint32_t list = kEarly; list <= kBlended; ++list) {
+    counts.draws += heads[list * kHeadWords];
+    counts.triangles += heads[list * kHeadWords + kHeadTriangles];
+  }
+  counts.objects = counts.draws;
+  counts.submits = 1;
+  return counts;
+}
+
+std::vector<uint32_t> GpuCulling::readSeen() {
+  const VulkanContext& context = drawing_.context();
+  std::vector<uint32_t> states(unitCount());
+  const VulkanBuffer buffer = context.buffer(4 * states.size(), "states", VulkanMemory::kReadback);
+  drawing_.ring().drain();
+  VulkanCommands commands(context, context.queue(), context.queueFamily());
+  commands.copy(states_, buffer, 4 * states.size());
+  commands.finish();
+  std::memcpy(states.data(), buffer.mapped(), 4 * states.size());
+  for (uint32_t& state : states) state = (state & kUnitSeen) != 0 ? 1 : 0;
+  return states;
+}
+
+}  // namespace sightline

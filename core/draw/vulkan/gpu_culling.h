@@ -1,0 +1,88 @@
+#pragma once
+#include "core/draw/cull_method.h"
+#include "core/draw/vulkan/cull_units.h"
+#include "core/draw/vulkan/drawing_needs.h"
+#include "core/draw/vulkan/vulkan_drawing.h"
+
+namespace sightline {
+
+/// Faults for tests of tests: each must be found by the comparison of depth.
+struct GpuCullingFaults {
+  bool no_second_pass = false;
+  bool floor_levels = false;   ///< levels of the pyramid drop odd columns and rows
+  uint32_t shrink_pixels = 0;  ///< boxes are so much smaller, all around
+};
+
+struct GpuCullingOptions {
+  bool mesh_shaders = true;  ///< for meshlets, where the device has them; else by lists of draws
+  GpuCullingFaults faults = {};
+};
+
+/// Culls on the GPU in two passes: what was seen in the frame before is drawn at once; what that hides is
+/// found, by a pyramid of its depth or by drawn boxes; what is seen and was not drawn is drawn then. The
+/// processor records one submit a frame, whatever is seen, and waits for nothing.
+///
+/// Based on: the two passes of S. Hill and D. Collin, Practical, Dynamic Visibility for Games, GPU Pro 2,
+/// 2011, and of U. Haar and S. Aaltonen, GPU-Driven Rendering Pipelines, SIGGRAPH 2015. Where we differ: the
+/// pyramid is exact at all sizes (core/shared/pyramid.h), and boxes are guarded against the device's
+/// roundings (core/shared/box_extent.h), so that no pixel differs from the picture of all drawables. Blended
+/// ones are drawn last, sorted on the processor by the distance of their boxes' centres along the view, of
+/// equally far ones that with the higher number first (FrameRecorder).
+class GpuCulling {
+ public:
+  /// The drawing must live as long. Throws Error that names what the device lacks, or what does not fit.
+  GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullingOptions& options = {});
+
+  /// Draws a frame. candidates: drawables that may be drawn, in any order; nothing: all may. changed: they
+  /// are other than in the last frame (so that a set is copied when its cell is entered, not in each frame).
+  void drawFrame(const Camera& camera);
+  void drawFrame(const Camera& camera, std::span<const uint32_t> candidates, bool changed);
+  /// As if just made.
+  void forget() { forget_ = true; }
+
+  /// Of the last frame: draws, objects (meshlets where they are the units), triangles, submits. Waits until
+  /// it has run.
+  FrameCounts counts();
+  bool usesMeshShaders() const { return meshes_; }
+  uint32_t unitCount() const { return uint32_t(units_.units.size()); }
+  /// Which units the last frame's test found to be seen, 1 or 0 a unit. Waits until it has run.
+  std::vector<uint32_t> readSeen();
+  const CullUnits& units() const { return units_; }
+
+  /// Records the draws of all opaque units in a pass, by the same pipeline: what the method is compared with.
+  void drawAll(VkCommandBuffer commands);
+
+ private:
+  struct Range {
+    uint32_t first, count;
+  };
+  Range range(AlphaKind kind) const {
+    return {units_.ends[size_t(kind)], units_.ends[size_t(kind) + 1] - units_.ends[size_t(kind)]};
+  }
+  VkDeviceAddress address() const { return launch_.address(); }
+  void createBuffers();
+  void prepare(VkCommandBuffer commands, std::span<const uint32_t> candidates, bool restricted, bool changed);
+  void orderBlended(VkCommandBuffer commands);
+  void test(VkCommandBuffer commands, Range range, uint32_t list, uint32_t test);
+  void writeDraws(VkCommandBuffer commands, Range range, uint32_t list, uint32_t kind);
+  void drawOpaque(VkCommandBuffer commands, uint32_t list);
+  void buildPyramid(VkCommandBuffer commands);
+  void testByBoxes(CommandRing::Entry& entry);
+  void testLate(CommandRing::Entry& entry);
+  void drawLate(CommandRing::Entry& entry);
+  void between(VkCommandBuffer commands) const;
+
+  VulkanDrawing& drawing_;
+  GpuMethod method_;
+  GpuCullingFaults faults_;
+  CullUnits units_;
+  bool meshes_ = false, forget_ = true, restricted_ = false;
+  CullLaunch numbers_{};
+  uint64_t pyramid_texels_ = 0;
+  CommandRing::Entry* last_ = nullptr;
+  uint64_t last_serial_ = 0;
+  VulkanBuffer launch_, unit_buffer_, states_, block_counts_, draws_, listed_, heads_, pyramid_, candidates_,
+      meshlets_, indices_, order_;
+};
+
+}  // namespace sightline
