@@ -264,7 +264,7 @@ void run(const WalkCommand& command) {
   }
   const glm::uvec2 size = parseResolution(command.resolution);
   const std::array reports = {command.report, command.csv, command.html};
-  requireSeparate(reports, std::array{command.scene, command.pvs, views ? std::filesystem::path() : command.path});
+  requireSeparate(reports, std::array{command.scene, command.pvs, std::filesystem::path(views ? "" : command.path)});
   const TextOutputs outputs(reports);
   WalkReport report;
   report.version = SL_VERSION;

@@ -54,13 +54,13 @@ struct FalseFrame {
 struct MethodReplay {
   std::string name;
   uint32_t repeats = 0;            ///< whole ones, of which times are medians; 0: of a part of one
-  std::vector<FrameTimes> times;
-  std::vector<FrameCounts> counts;
-  std::vector<CheckedFrame> checks;  ///< empty: not checked
-  std::vector<Pop> pops;             ///< the longest first, at most kMostPops
+  std::vector<FrameTimes> times = {};
+  std::vector<FrameCounts> counts = {};
+  std::vector<CheckedFrame> checks = {};  ///< empty: not checked
+  std::vector<Pop> pops = {};             ///< the longest first, at most kMostPops
   uint64_t pop_count = 0;            ///< all
-  std::vector<FalseFrame> worst;     ///< most false pixels first
-  std::vector<std::vector<uint32_t>> drawn;  ///< drawables, of ReplayOptions::shown_frames
+  std::vector<FalseFrame> worst = {};     ///< most false pixels first
+  std::vector<std::vector<uint32_t>> drawn = {};  ///< drawables, of ReplayOptions::shown_frames
 };
 inline constexpr size_t kMostPops = 10;
 

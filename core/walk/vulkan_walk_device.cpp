@@ -121,7 +121,7 @@ class GpuPlayer : public VulkanPlayer {
     const std::vector<uint32_t> seen = culling_.readSeen();
     std::vector<uint32_t> drawn;
     for (size_t unit = 0; unit < seen.size(); ++unit) {
-      if (seen[unit] != 0) drawn.push_back(culling_.units().units[unit].drawable);
+      if (seen[unit] != 0) drawn.push_back(culling_.units().units[unit].run.z);
     }
     std::ranges::sort(drawn);
     drawn.erase(std::unique(drawn.begin(), drawn.end()), drawn.end());

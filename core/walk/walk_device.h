@@ -6,6 +6,7 @@
 
 #include "core/draw/draw_scene.h"
 #include "core/draw/pvs_units.h"
+#include "core/trace/device_info.h"
 #include "core/walk/walk_frame.h"
 #include "core/walk/walk_methods.h"
 
