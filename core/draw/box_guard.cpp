@@ -8,7 +8,7 @@ namespace sightline {
 namespace {
 
 constexpr double kPlaceRounding = 0x1p-20;
-constexpr double kDepthRounding = 0x1p-21;
+constexpr double kDepthRounding = 0x1p-20;
 constexpr double kSnappedPixels = 1.0 / 128;
 
 double lengthOf(const vec4& v) {
@@ -41,7 +41,7 @@ std::optional<AxisBox> BoxGuard::grown(const AxisBox& box) const {
     grown.low[axis] = std::nextafter(float(box.low[axis] - by), -kEnd);
     grown.high[axis] = std::nextafter(float(box.high[axis] + by), kEnd);
   }
-  if (!(frustum_.distancesOf(grown).least > near_)) return {};
+  if (!(frustum_.distancesOf(grown).least > std::fmax(near_, distances.least / 2))) return {};
   return grown;
 }
 

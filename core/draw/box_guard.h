@@ -13,9 +13,10 @@ namespace sightline {
 /// - 1/128 pixel at their largest depth: devices snap corners to 1/256 pixel, so that a box and a triangle in
 /// it may
 ///   each be moved by half of that, in opposite directions;
-/// - 2^-21 of largest depth squared over least: depth is linear in the image, and devices find it there to
+/// - 2^-20 of largest depth squared over least: depth is linear in the image, and devices find it there to
 /// about 2^-22
-///   of the greatest (the nearest) that a face has, which far away is more than places are known to.
+///   of the greatest (the nearest) that a face has, which far away is more than places are known to. That is
+///   what a triangle may lose and a box, up to twice as near, may gain.
 ///
 /// So whatever in the box covers a pixel of an image lies, there, behind the grown box's faces, or on them.
 /// Boxes in a box grow to boxes in the grown one.

@@ -168,8 +168,9 @@ void ChcPlusTraversal::ask(std::vector<uint32_t> nodes, bool retest) {
   for (const uint32_t index : nodes) {
     const BoxNode& node = tree_.nodes[index];
     const auto tight = options_.tight_bounds ? tree_.tightOf(node) : std::span(&node.box, 1);
-    // They grow, as they lie in the node's own box, which does (visit).
-    for (const AxisBox& box : tight) boxes.push_back(frame_.guard().grown(box).value());
+    // The node's own box grows (visit), and so do those in it, but for the last digit.
+    const AxisBox own = frame_.guard().grown(node.box).value();
+    for (const AxisBox& box : tight) boxes.push_back(frame_.guard().grown(box).value_or(own));
   }
   frame_.ask(std::move(boxes));
   if (nodes.size() > 1) ++frame_.counts.multi_queries;

@@ -157,7 +157,7 @@ void VulkanStage::uploadTable() const {
 }
 
 void VulkanStage::record(VkCommandBuffer commands, VkDeviceAddress launch, uint32_t count) const {
-  if (pipeline_.get() == VK_NULL_HANDLE) createPipeline(list_name_);
+  compile();
   if (!table_records_.empty() && table_.bytes() == 0) uploadTable();
   const VulkanApi& api = context_->api();
   const VulkanLimits& limits = context_->limits();

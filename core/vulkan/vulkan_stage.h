@@ -31,6 +31,11 @@ class VulkanStage {
   static VulkanStage rays(const VulkanContext& context, const std::string& generation,
                           const std::string& miss, const std::string& hit);
 
+  /// Compiles what is not yet.
+  void compile() const {
+    if (pipeline_.get() == VK_NULL_HANDLE) createPipeline(list_name_);
+  }
+
   /// Records the dispatch of the items 0 .. count - 1, in pieces that the device takes.
   /// launch: of VulkanPush.
   void record(VkCommandBuffer commands, VkDeviceAddress launch, uint32_t count) const;

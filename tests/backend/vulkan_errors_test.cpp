@@ -131,7 +131,7 @@ TEST(VulkanErrors, AContextToDrawWithTurnsNoRayTracingOn) {
   EXPECT_EQ(context.api().vkCreateAccelerationStructureKHR, nullptr);
   EXPECT_EQ(context.api().vkCreateRayTracingPipelinesKHR, nullptr);
   const VulkanImage image(context, VK_FORMAT_R8G8B8A8_UNORM, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT,
-                          VK_IMAGE_ASPECT_COLOR_BIT, 64, 1, "a picture");
+                          VK_IMAGE_ASPECT_COLOR_BIT, {64, 64, 1}, "a picture");
   EXPECT_NE(image.view(), VkImageView(VK_NULL_HANDLE));
   const VulkanBuffer on_device = context.buffer(64, "numbers");
   const VulkanBuffer readback = context.buffer(64, "numbers", VulkanMemory::kReadback);

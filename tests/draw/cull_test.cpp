@@ -289,7 +289,8 @@ class ShrunkenBoxes : public FaultyBackend {
         boxes.back().push_back({glm::min(box.low + by, middle), glm::max(box.high - by, middle)});
       }
     }
-    std::vector<OcclusionQuery> changed(boxes.begin(), boxes.end());
+    std::vector<OcclusionQuery> changed;
+    for (const std::vector<AxisBox>& of : boxes) changed.push_back({of});
     return inner_.submit(draws, changed);
   }
 

@@ -134,8 +134,15 @@ TEST(DrawFrustum, IsAsExactAtAnyScale) {
   }
 }
 
-/// Pixels of the triangles that are nearer than the box's faces there.
-int uncoveredPixels(const Camera& camera, const AxisBox& box, const std::array<glm::vec3, 3>& triangle) {
+/// The error that a device may make in depth, for what is so far away at least.
+double depthError(const Camera& camera, const AxisBox& box) {
+  return 0x1p-22 * camera.eye.w / Frustum(camera).distancesOf(box).least;
+}
+
+/// Pixels of the triangles that are nearer than the box's faces there, or would be if depths were off by
+/// `error`.
+int uncoveredPixels(const Camera& camera, const AxisBox& box, const std::array<glm::vec3, 3>& triangle,
+                    double error) {
   std::vector<float> nearest(size_t{camera.size.x} * camera.size.y, 0.0f);
   const auto corner = [&](int i) {
     return glm::vec3((i & 1) != 0 ? box.high.x : box.low.x, (i & 2) != 0 ? box.high.y : box.low.y,
@@ -157,7 +164,7 @@ int uncoveredPixels(const Camera& camera, const AxisBox& box, const std::array<g
   }
   int uncovered = 0;
   rasterTriangle(camera, triangle, [&](const RasterPixel& p) {
-    uncovered += nearest[size_t{p.y} * camera.size.x + p.x] < p.depth;
+    uncovered += nearest[size_t{p.y} * camera.size.x + p.x] - error < p.depth;
     return true;
   });
   return uncovered;
@@ -169,16 +176,23 @@ TEST(BoxGuard, GrownBoxesLieBeforeAllTheyHold) {
   for (int i = 0; i < 20000; ++i) {
     const float scale = std::ldexp(1.0f, int(random.pick(40)) - 20);
     const Camera camera = randomCamera(random, scale, kSizes[i % 6]);
-    // Mostly far and small: that is where a pixel is large.
-    const AxisBox any = randomBox(random, scale);
+    // Mostly far and small: that is where a pixel is large. Some reach from near the eye to far away.
+    AxisBox any = randomBox(random, scale);
+    if (i % 3 == 0) {
+      const vec3 ahead = vec3(camera.eye) + vec3(camera.forward) * (0.01f * scale),
+                 far = random.point(1000 * scale);
+      any = {glm::min(ahead, ahead + far), glm::max(ahead, ahead + far)};
+    }
     const std::array<glm::vec3, 3> triangle{pointIn(random, any), pointIn(random, any), pointIn(random, any)};
     const AxisBox box{glm::min(glm::min(triangle[0], triangle[1]), triangle[2]),
                       glm::max(glm::max(triangle[0], triangle[1]), triangle[2])};
     const auto grown = BoxGuard(camera).grown(box);
     if (!grown) continue;
     ++asked;
-    ASSERT_EQ(uncoveredPixels(camera, *grown, triangle), 0) << "round " << i;
-    as_they_are += uncoveredPixels(camera, box, triangle) > 0;
+    ASSERT_GT(Frustum(camera).distancesOf(*grown).least, camera.eye.w);
+    const double error = depthError(camera, box) + depthError(camera, *grown);
+    ASSERT_EQ(uncoveredPixels(camera, *grown, triangle, error), 0) << "round " << i;
+    as_they_are += uncoveredPixels(camera, box, triangle, 0) > 0;
   }
   EXPECT_GT(asked, 2000);
   EXPECT_GT(as_they_are, 10) << "boxes need not grow?";
@@ -206,6 +220,9 @@ TEST(BoxGuard, WhatHoldsTheCameraIsNotAskedAbout) {
   EXPECT_FALSE(guard.grown({{-1, -1, -1}, {1, 1, 0}}));  // the camera is on a face
   EXPECT_FALSE(guard.grown({{5, 5, -1}, {6, 6, 1}}));    // partly behind
   EXPECT_TRUE(guard.grown({{-1, -1, -1}, {1, 1, -0.5f}}));
+  EXPECT_FALSE(guard.grown({{-1, -1, -1}, {1, 1, -0x1p-18f}}));  // reaches the near plane once it has grown
+  EXPECT_FALSE(
+      guard.grown({{-1000, -1000, -1000}, {1000, 1000, -1}}));  // grows by half of its least distance
   const AxisBox far{{-1, -1, -101}, {1, 1, -100}};
   const auto grown = guard.grown(far);
   ASSERT_TRUE(grown);

@@ -24,9 +24,9 @@ namespace sightline {
 ///   void fill(Buffer, word, bytes), copy(from, to, bytes)
 ///   StageLaunch& launch()                      of the next run
 ///   void bind(StageBuffer, Buffer)             for the runs that follow
-///   void prepare(span<const GpuStage>)         compiles them, if that has to be done
-///   void run(GpuStage, count)                  over so many rays or work items, after all before it
-///   array takeCounters()                       waits; kCounterWords words, which are 0 again then
+///   void prepare(span<const GpuStage>)         compiles these tracing stages and all others, if that is to
+///   do void run(GpuStage, count)                  over so many rays or work items, after all before it array
+///   takeCounters()                       waits; kCounterWords words, which are 0 again then
 ///
 /// place_of is bound by the API, as are scene and counters.
 template <typename Api>

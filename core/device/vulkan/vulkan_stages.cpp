@@ -75,7 +75,11 @@ void VulkanStages::read(const VulkanBuffer& buffer, void* target, uint64_t bytes
 }
 
 void VulkanStages::prepare(std::span<const GpuStage> stages) {
-  tbb::parallel_for(size_t(0), stages.size(), [&](size_t i) { stage(stages[i]); });
+  std::vector<GpuStage> all(stages.begin(), stages.end());
+  for (uint32_t i = 0; i < kGpuStages; ++i) {
+    if (!tracesRays(GpuStage(i))) all.push_back(GpuStage(i));
+  }
+  tbb::parallel_for(size_t(0), all.size(), [&](size_t i) { stage(all[i]).compile(); });
 }
 
 void VulkanStages::run(GpuStage name, uint64_t count) {

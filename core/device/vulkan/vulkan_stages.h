@@ -35,7 +35,7 @@ class VulkanStages {
 
   StageLaunch& launch() { return runner_.launch.numbers; }
   void bind(StageBuffer name, const VulkanBuffer& buffer) { runner_.bind(name, buffer); }
-  /// The stages' pipelines, on several threads.
+  /// The pipelines of these tracing stages and of all others, on several threads.
   void prepare(std::span<const GpuStage> stages);
   /// Makes the stage's pipeline when it is first needed.
   void run(GpuStage stage, uint64_t count);
