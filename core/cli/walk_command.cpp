@@ -82,13 +82,15 @@ void checkMethods(const WalkCommand& command) {
   for (const std::string& name : command.methods) {
     if (name == kAllMethods) throw Error("--methods: all stands alone", kExitUsage);
     if (walkMethod(name).needs_pvs && command.pvs.empty()) {
-      throw Error(fmt::format("--methods: {} takes the sets of a bake: give it --pvs OUT.pvs", name), kExitUsage);
+      throw Error(fmt::format("--methods: {} takes the sets of a bake: give it --pvs OUT.pvs", name),
+                  kExitUsage);
     }
   }
 }
 
 /// The methods to replay; what `all` leaves out goes to report.left_out.
-std::vector<std::string> chooseMethods(const WalkCommand& command, const WalkDevice& device, WalkReport& report) {
+std::vector<std::string> chooseMethods(const WalkCommand& command, const WalkDevice& device,
+                                       WalkReport& report) {
   std::vector<std::string> chosen;
   for (const WalkMethodInfo& info : walkMethods()) {
     const bool named = std::ranges::find(command.methods, info.name) != command.methods.end();
@@ -101,15 +103,15 @@ std::vector<std::string> chooseMethods(const WalkCommand& command, const WalkDev
       throw Error(fmt::format("{} cannot run on {}: {}", info.name, device.info().name, why));
     } else {
       report.left_out.push_back({info.name, why});
-      fmt::print("{} is left out: {}\n", info.name, why);
     }
   }
+  for (const std::string& line : leftOutLines(report)) fmt::print("{}\n", line);
   return chosen;
 }
 
 /// Views of a cell, each a jump; or the walk's frames.
-WalkFrames walkFrames(const WalkCommand& command, const PvsFile* pvs, const Scene& scene, const AxisBox& bounds,
-                      glm::uvec2 size, WalkReport& report) {
+WalkFrames walkFrames(const WalkCommand& command, const PvsFile* pvs, const Scene& scene,
+                      const AxisBox& bounds, glm::uvec2 size, WalkReport& report) {
   WalkFrames frames;
   const float near = nearDistance(bounds);
   if (command.path.starts_with(kViewsPath)) {
@@ -128,7 +130,8 @@ WalkFrames walkFrames(const WalkCommand& command, const PvsFile* pvs, const Scen
   report.fov = path.fov;
   for (uint32_t frame = 0; frame < path.frames(); ++frame) {
     const PathPlace at = placeAt(path, frame);
-    frames.cameras.push_back(makeCamera(lookAt(at.eye, at.look, path.fov, size.x, size.y), size.x, size.y, near));
+    frames.cameras.push_back(
+        makeCamera(lookAt(at.eye, at.look, path.fov, size.x, size.y), size.x, size.y, near));
   }
   frames.cuts = path.cuts;
   return frames;
@@ -155,7 +158,8 @@ std::vector<uint32_t> framesToShow(const WalkFrames& frames) {
   std::vector<uint32_t> shown;
   const std::vector<WalkStretch> stretches = stretchesOf(frames);
   for (size_t i = 0; i < stretches.size(); ++i) {
-    if (i < 2 || i + 1 == stretches.size()) shown.push_back(stretches[i].begin + (stretches[i].end - stretches[i].begin) / 2);
+    if (i < 2 || i + 1 == stretches.size())
+      shown.push_back(stretches[i].begin + (stretches[i].end - stretches[i].begin) / 2);
   }
   return shown;
 }
@@ -264,7 +268,8 @@ void run(const WalkCommand& command) {
   }
   const glm::uvec2 size = parseResolution(command.resolution);
   const std::array reports = {command.report, command.csv, command.html};
-  requireSeparate(reports, std::array{command.scene, command.pvs, std::filesystem::path(views ? "" : command.path)});
+  requireSeparate(reports,
+                  std::array{command.scene, command.pvs, std::filesystem::path(views ? "" : command.path)});
   const TextOutputs outputs(reports);
   WalkReport report;
   report.version = SL_VERSION;
@@ -281,7 +286,8 @@ void run(const WalkCommand& command) {
     pvs = loadSet(command, scene);
     scene = inState(std::move(scene), first, command.doors);
   }
-  report.scene = summarize(scene, command.scene.filename().string(), pvs ? pvs->scene_hash : hashScene(scene));
+  report.scene =
+      summarize(scene, command.scene.filename().string(), pvs ? pvs->scene_hash : hashScene(scene));
   const DrawScene draw = makeDrawScene(scene, {.split = command.split});
   sayPartition(command, scene, draw.drawables);
   report.drawables = draw.drawables.list.size();
@@ -315,15 +321,17 @@ void run(const WalkCommand& command) {
   }
   StopSignal stop;
   StatusLine status;
-  ReplayHooks hooks{.progress = [&](const ReplayProgress& p) {
-                      status.show([&] { return statusText(p, clock() / 1000); });
-                    },
-                    .stop = stop.flag()};
-  report.replay = replayWalk(*device, walk, report.frames, methods, report.options, tracer.get(), clock, hooks);
+  ReplayHooks hooks{
+      .progress =
+          [&](const ReplayProgress& p) { status.show([&] { return statusText(p, clock() / 1000); }); },
+      .stop = stop.flag()};
+  report.replay =
+      replayWalk(*device, walk, report.frames, methods, report.options, tracer.get(), clock, hooks);
   status.end();
   std::fputs(walkTable(report).c_str(), stdout);
-  const WalkPictures pictures =
-      command.pictures.empty() || !report.replay.complete ? WalkPictures{} : drawPictures(command, walk, *tracer, report);
+  const WalkPictures pictures = command.pictures.empty() || !report.replay.complete
+                                    ? WalkPictures{}
+                                    : drawPictures(command, walk, *tracer, report);
   saveResults(command, outputs, report, pictures);
   concludeWalk(command, report, stop);
 }
@@ -331,9 +339,10 @@ void run(const WalkCommand& command) {
 void declareFiles(CLI::App& command, WalkCommand& o) {
   command.add_option("scene", o.scene, "the scene")->required()->type_name("SCENE");
   command
-      .add_option("--path", o.path,
-                  "the camera's walk (made by path or scene); views:CELL: the views by which measure looks out of a "
-                  "cell of --pvs")
+      .add_option(
+          "--path", o.path,
+          "the camera's walk (made by path or scene); views:CELL: the views by which measure looks out of a "
+          "cell of --pvs")
       ->required()
       ->type_name("W.json");
   command.add_option("--methods", o.methods, "all, or names with commas between them; they are listed below")
@@ -341,17 +350,23 @@ void declareFiles(CLI::App& command, WalkCommand& o) {
       ->type_name("M,...");
   command.add_option("--pvs", o.pvs, "sets of this scene, for the methods pvs, pvs+vfc and pvs+hiz")
       ->type_name("OUT.pvs");
-  command.add_option("--device", o.device, "what draws: vulkan, vulkan:INDEX, vulkan:PART-OF-NAME, or cpu, slowly")
+  command
+      .add_option("--device", o.device,
+                  "what draws: vulkan, vulkan:INDEX, vulkan:PART-OF-NAME, or cpu, slowly")
       ->type_name("NAME")
       ->capture_default_str();
-  command.add_option("--report", o.report, "write what was found as JSON (docs/walk.md); - is standard output")
+  command
+      .add_option("--report", o.report, "write what was found as JSON (docs/walk.md); - is standard output")
       ->type_name("R.json");
-  command.add_option("--csv", o.csv, "write times and counts as CSV, a line a method and frame")->type_name("R.csv");
-  command.add_option("--html", o.html, "write a page with tables, figures and the pictures, if there are any")
+  command.add_option("--csv", o.csv, "write times and counts as CSV, a line a method and frame")
+      ->type_name("R.csv");
+  command
+      .add_option("--html", o.html, "write a page with tables, figures and the pictures, if there are any")
       ->type_name("R.html");
   command
       .add_option("--pictures", o.pictures,
-                  "draw what was drawn, from above, and the worst false pixels, red; an earlier walk's pictures there "
+                  "draw what was drawn, from above, and the worst false pixels, red; an earlier walk's "
+                  "pictures there "
                   "are removed")
       ->check(notStandardOutput("a folder of pictures"))
       ->type_name("DIR");
@@ -361,11 +376,14 @@ void declareFiles(CLI::App& command, WalkCommand& o) {
 
 void declareReplay(CLI::App& command, WalkCommand& o) {
   const auto whole = [&](const char* name, uint32_t& value, const char* about, uint64_t low, uint64_t high) {
-    command.add_option(name, value, about)->transform(wholeNumber(low, high))->type_name("N")->capture_default_str();
+    command.add_option(name, value, about)
+        ->transform(wholeNumber(low, high))
+        ->type_name("N")
+        ->capture_default_str();
   };
   command.add_option("--resolution", o.resolution, "of the frames")->type_name("WxH")->capture_default_str();
-  whole("--repeats", o.options.repeats, "whole replays a method, of which times are medians; one more is dropped", 1,
-        1000);
+  whole("--repeats", o.options.repeats,
+        "whole replays a method, of which times are medians; one more is dropped", 1, 1000);
   whole("--in-flight", o.options.in_flight, "frames under way at once: 1 shows latency, 2 throughput", 1, 4);
   command.add_option("--check", o.check, "all: compare every frame with one that draws everything; none")
       ->check(oneOf({"all", "none"}))
@@ -398,14 +416,17 @@ void declareCulling(CLI::App& command, WalkCommand& o) {
         ->capture_default_str()
         ->group(group);
   };
-  whole("--split", o.split, "objects of more triangles are cut into parts of at most so many; 0: never", 1u << 30);
+  whole("--split", o.split, "objects of more triangles are cut into parts of at most so many; 0: never",
+        1u << 30);
   command
       .add_option("--schedule", o.schedule,
-                  "live: answers arrive when the device has them; fixed: after so many steps, the same on all devices")
+                  "live: answers arrive when the device has them; fixed: after so many steps, the same on "
+                  "all devices")
       ->check(oneOf({"live", "fixed"}))
       ->capture_default_str()
       ->group(group);
-  whole("--batch", chc.batch_size, "hidden nodes that wait to be asked about together (chc++, opti-chc++)", 1u << 20);
+  whole("--batch", chc.batch_size, "hidden nodes that wait to be asked about together (chc++, opti-chc++)",
+        1u << 20);
   whole("--assume", chc.assumed_frames, "frames for which what was seen counts as seen (likewise)", 1u << 20);
   const auto flag = [&](const char* name, bool& value, const char* about) {
     command.add_flag(name, value, about)->group(group);
@@ -414,7 +435,8 @@ void declareCulling(CLI::App& command, WalkCommand& o) {
   flag("--no-tight", o.no_tight, "ask about nodes' own boxes, not those below (likewise)");
   flag("--no-c-queue", o.no_c_queue, "ask about nodes of failed multiqueries at once (opti-chc++)");
   flag("--no-batching", o.no_batching, "a submit at each change from drawing to asking (opti-chc++)");
-  flag("--no-second-condition", o.no_second_condition, "ask as soon as nothing is left to visit (opti-chc++)");
+  flag("--no-second-condition", o.no_second_condition,
+       "ask as soon as nothing is left to visit (opti-chc++)");
   command.add_option("--outside", o.outside, "what the methods by sets draw where the camera is in no cell")
       ->check(oneOf({"all", "nearest", "error"}))
       ->capture_default_str()

@@ -120,7 +120,8 @@ std::string spansHtml(const ReportSpans& chart) {
   }
   html += "<div class=\"row axis\"><span></span><div class=\"ticks\">";
   for (int tick = 0; tick <= 4; ++tick) {
-    html += fmt::format("<span>{:.3g}{}</span>", end * tick / 4, tick == 4 ? " " + escapeHtml(chart.unit) : "");
+    html +=
+        fmt::format("<span>{:.3g}{}</span>", end * tick / 4, tick == 4 ? " " + escapeHtml(chart.unit) : "");
   }
   html += "</div></div>\n</div>\n<div class=\"names\">";
   for (size_t i = 0; i < names.size(); ++i) {

@@ -61,8 +61,8 @@ struct ReportChart {
   std::string note = {};       ///< below the title; empty: none
   std::string x = {}, y = {};  ///< what the axes say, with the unit: "seconds"
   bool log_x = false, log_y = false;
-  bool stacked = false;   ///< series are parts of a whole, drawn as areas on top of each other, at the same x; the
-                          ///< y axis begins at 0
+  bool stacked = false;  ///< series are parts of a whole, drawn as areas on top of each other, at the same x;
+                         ///< the y axis begins at 0
   std::string pick = {};  ///< what the series on demand are: "single cells". Charts beside each other share
                           ///< one list to pick from, by the names of the series
   std::vector<ChartSeries> series = {};
@@ -74,12 +74,12 @@ struct ReportSpan {
   double begin = 0, end = 0;
 };
 
-/// What happened when: rows of bars over one axis that begins at 0. Parts of the same name have one colour in all
-/// rows.
+/// What happened when: rows of bars over one axis that begins at 0. Parts of the same name have one colour in
+/// all rows.
 struct ReportSpans {
   std::string title = {};
   std::string note = {};
-  std::string unit = {};  ///< of the axis: "ms"
+  std::string unit = {};                                                   ///< of the axis: "ms"
   std::vector<std::pair<std::string, std::vector<ReportSpan>>> rows = {};  ///< name and spans, in their order
 };
 

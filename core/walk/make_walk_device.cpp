@@ -14,13 +14,15 @@ std::unique_ptr<WalkDevice> makeWalkDevice(const std::string& name, const WalkSc
 #ifdef SL_WITH_VULKAN
     return makeVulkanWalkDevice(name, scene, std::move(clock));
 #else
-    throw Error("walk: this program was built without Vulkan (SL_WITH_VULKAN=OFF); --device cpu draws on the "
-                "processor");
+    throw Error(
+        "walk: this program was built without Vulkan (SL_WITH_VULKAN=OFF); --device cpu draws on the "
+        "processor");
 #endif
   }
-  throw Error(fmt::format("no device \"{}\" draws; there are vulkan, vulkan:INDEX, vulkan:PART-OF-NAME and cpu",
-                          name),
-              kExitUsage);
+  throw Error(
+      fmt::format("no device \"{}\" draws; there are vulkan, vulkan:INDEX, vulkan:PART-OF-NAME and cpu",
+                  name),
+      kExitUsage);
 }
 
 }  // namespace sightline

@@ -30,8 +30,10 @@ FrameTimes medianTimes(std::span<const std::vector<FrameTimes>> replays, size_t 
   FrameTimes times;
   times.frame = median([](const FrameTimes& t) { return t.frame; });
   times.gpu_frame = median([](const FrameTimes& t) { return t.gpu_frame; });
-  for (size_t i = 0; i < times.cpu.size(); ++i) times.cpu[i] = median([&](const FrameTimes& t) { return t.cpu[i]; });
-  for (size_t i = 0; i < times.gpu.size(); ++i) times.gpu[i] = median([&](const FrameTimes& t) { return t.gpu[i]; });
+  for (size_t i = 0; i < times.cpu.size(); ++i)
+    times.cpu[i] = median([&](const FrameTimes& t) { return t.cpu[i]; });
+  for (size_t i = 0; i < times.gpu.size(); ++i)
+    times.gpu[i] = median([&](const FrameTimes& t) { return t.gpu[i]; });
   return times;
 }
 
@@ -175,7 +177,7 @@ class Replayer {
   }
 
   CheckedFrame summary(const FrameCheck& check) const {
-    CheckedFrame result{check.false_pixels, check.near_pixels,  check.largest(),
+    CheckedFrame result{check.false_pixels,   check.near_pixels,  check.largest(),
                         check.missing.size(), check.shown.size(), 0};
     for (const uint32_t drawable : check.shown) {
       result.optimal_triangles += scene_.draw.drawables.list[drawable].triangle_count;
@@ -184,7 +186,9 @@ class Replayer {
   }
 
   void keepWorst(MethodReplay& found, uint32_t frame, const FrameCheck& check, WalkPlayer& player) const {
-    const auto worse = [](const FalseFrame& a, const FalseFrame& b) { return a.pixels.size() > b.pixels.size(); };
+    const auto worse = [](const FalseFrame& a, const FalseFrame& b) {
+      return a.pixels.size() > b.pixels.size();
+    };
     const bool full = found.worst.size() >= options_.kept_frames;
     if (check.false_pixels == 0 || options_.kept_frames == 0) return;
     if (full && check.false_pixels <= found.worst.back().pixels.size()) return;

@@ -18,20 +18,20 @@ struct WalkFrames {
 };
 
 struct ReplayOptions {
-  uint32_t repeats = 3;    ///< of the whole walk by each method, that count; one more is dropped before
-  uint32_t in_flight = 2;  ///< frames under way at once, 1 or more: 1 shows latency, 2 throughput
-  bool check = true;       ///< compare each frame with one that draws everything
-  uint32_t trace_every = 50;     ///< frames from one that is traced to the next; 0: none is
-  uint32_t kept_frames = 3;      ///< of each method the worst frames whose false pixels are kept
+  uint32_t repeats = 3;       ///< of the whole walk by each method, that count; one more is dropped before
+  uint32_t in_flight = 2;     ///< frames under way at once, 1 or more: 1 shows latency, 2 throughput
+  bool check = true;          ///< compare each frame with one that draws everything
+  uint32_t trace_every = 50;  ///< frames from one that is traced to the next; 0: none is
+  uint32_t kept_frames = 3;   ///< of each method the worst frames whose false pixels are kept
   std::vector<uint32_t> shown_frames = {};  ///< of which it is kept what was drawn
-  WalkMethodOptions method;
+  WalkMethodOptions method = {};
 };
 
 /// A frame's comparison with one that draws everything.
 struct CheckedFrame {
   uint64_t false_pixels = 0, near_pixels = 0;
-  uint64_t largest = 0;  ///< most false pixels of one drawable
-  uint64_t missing = 0;  ///< drawables with false pixels
+  uint64_t largest = 0;                                   ///< most false pixels of one drawable
+  uint64_t missing = 0;                                   ///< drawables with false pixels
   uint64_t optimal_drawables = 0, optimal_triangles = 0;  ///< with a pixel, and all triangles of those
   bool operator==(const CheckedFrame&) const = default;
 };
@@ -53,13 +53,13 @@ struct FalseFrame {
 /// What one method did. Lists are by frame, and shorter than the walk where it was stopped.
 struct MethodReplay {
   std::string name;
-  uint32_t repeats = 0;            ///< whole ones, of which times are medians; 0: of a part of one
+  uint32_t repeats = 0;  ///< whole ones, of which times are medians; 0: of a part of one
   std::vector<FrameTimes> times = {};
   std::vector<FrameCounts> counts = {};
-  std::vector<CheckedFrame> checks = {};  ///< empty: not checked
-  std::vector<Pop> pops = {};             ///< the longest first, at most kMostPops
-  uint64_t pop_count = 0;            ///< all
-  std::vector<FalseFrame> worst = {};     ///< most false pixels first
+  std::vector<CheckedFrame> checks = {};          ///< empty: not checked
+  std::vector<Pop> pops = {};                     ///< the longest first, at most kMostPops
+  uint64_t pop_count = 0;                         ///< all
+  std::vector<FalseFrame> worst = {};             ///< most false pixels first
   std::vector<std::vector<uint32_t>> drawn = {};  ///< drawables, of ReplayOptions::shown_frames
 };
 inline constexpr size_t kMostPops = 10;

@@ -142,8 +142,9 @@ class SoftwareWalkDevice : public WalkDevice {
     return walkMethod(method).on_gpu ? method + " chooses on a GPU what is drawn; cpu has none" : "";
   }
   std::unique_ptr<WalkPlayer> play(const std::string& method, const WalkMethodOptions& options) override {
-    return std::make_unique<SoftwarePlayer>(scene_, scene_.units == nullptr ? no_lists_ : scene_.units->triangles,
-                                            clock_, makeCullMethod(method, scene_.draw, scene_.units, options));
+    return std::make_unique<SoftwarePlayer>(
+        scene_, scene_.units == nullptr ? no_lists_ : scene_.units->triangles, clock_,
+        makeCullMethod(method, scene_.draw, scene_.units, options));
   }
 
  private:

@@ -44,7 +44,8 @@ TracedFrame traceOptimal(Tracer& tracer, const Drawables& drawables, const Camer
     if (ownerOf(ids[pixel]) == reference[pixel]) continue;
     others.push_back(pixel);
     for (int dy = -1; dy <= 1; ++dy) {
-      for (int dx = -1; dx <= 1; ++dx) rays.push_back(pixelRay(camera, pixel % width, pixel / width, dx * kEdge, dy * kEdge));
+      for (int dx = -1; dx <= 1; ++dx)
+        rays.push_back(pixelRay(camera, pixel % width, pixel / width, dx * kEdge, dy * kEdge));
     }
   }
   hits.resize(rays.size());

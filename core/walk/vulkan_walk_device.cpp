@@ -48,7 +48,8 @@ class VulkanPlayer : public WalkPlayer {
   FrameCheck check() override {
     const DepthDifference difference = check_.compare(culling());
     FrameCheck check{difference.false_pixels, difference.too_near_pixels, {}, difference.shown};
-    for (const DepthDifference::Missing& m : difference.missing) check.missing.push_back({m.drawable, m.pixels});
+    for (const DepthDifference::Missing& m : difference.missing)
+      check.missing.push_back({m.drawable, m.pixels});
     return check;
   }
   std::vector<size_t> falsePixels() override {

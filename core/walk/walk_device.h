@@ -67,7 +67,8 @@ class WalkDevice {
 };
 
 /// "cpu": draws on the processor, slowly, the same everywhere. "vulkan", "vulkan:INDEX",
-/// "vulkan:PART-OF-NAME": a device that draws. Throws Error that names what there is, or what the device lacks.
+/// "vulkan:PART-OF-NAME": a device that draws. Throws Error that names what there is, or what the device
+/// lacks.
 std::unique_ptr<WalkDevice> makeWalkDevice(const std::string& name, const WalkScene& scene, WalkClock clock);
 
 }  // namespace sightline

@@ -16,13 +16,13 @@ enum class CpuPart {
   idle,  ///< until the frames before are done, so that no more than asked for are in flight
 };
 inline constexpr size_t kCpuPartCount = 5;
-inline constexpr std::array<const char*, kCpuPartCount> kCpuPartNames = {"traverse", "record", "submit",
-                                                                        "wait for queries", "wait for frames"};
+inline constexpr std::array<const char*, kCpuPartCount> kCpuPartNames = {
+    "traverse", "record", "submit", "wait for queries", "wait for frames"};
 
 /// What the GPU's time in a frame goes to; rest: between submits.
 inline constexpr size_t kGpuPartCount = 5;
 inline constexpr std::array<const char*, kGpuPartCount> kGpuPartNames = {"draw", "query", "pyramid", "cull",
-                                                                        "rest"};
+                                                                         "rest"};
 
 /// Times of a frame in milliseconds. A device without a GPU has no GPU times: all 0.
 struct FrameTimes {
@@ -39,8 +39,8 @@ struct FrameCheck {
     uint64_t pixels = 0;  ///< that should show it, and show what is behind
     bool operator==(const Missing&) const = default;
   };
-  uint64_t false_pixels = 0;  ///< farther away than they should be, by however little
-  uint64_t near_pixels = 0;   ///< nearer: always 0, or the device draws the same in two ways
+  uint64_t false_pixels = 0;     ///< farther away than they should be, by however little
+  uint64_t near_pixels = 0;      ///< nearer: always 0, or the device draws the same in two ways
   std::vector<Missing> missing;  ///< by drawable
   std::vector<uint32_t> shown;   ///< drawables with a pixel that should show them, ascending
 

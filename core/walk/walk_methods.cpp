@@ -39,8 +39,8 @@ const WalkMethodInfo& walkMethod(const std::string& name) {
               kExitUsage);
 }
 
-std::unique_ptr<CullMethod> makeCullMethod(const std::string& name, const DrawScene& scene, const PvsUnits* units,
-                                           const WalkMethodOptions& options) {
+std::unique_ptr<CullMethod> makeCullMethod(const std::string& name, const DrawScene& scene,
+                                           const PvsUnits* units, const WalkMethodOptions& options) {
   ChcOptions plain = plainChc();
   plain.batch_size = options.chc.batch_size;
   plain.assumed_frames = options.chc.assumed_frames;

@@ -10,7 +10,7 @@ namespace sightline {
 /// A way to cull, by its name on the command line.
 struct WalkMethodInfo {
   std::string name;
-  std::string about;   ///< a line
+  std::string about;  ///< a line
   bool needs_pvs;
   bool on_gpu;  ///< chooses on the GPU what is drawn
   bool exact;   ///< no pixel may differ from drawing everything
@@ -30,7 +30,7 @@ struct WalkMethodOptions {
 
 /// A method that chooses on the processor, by a name of walkMethods(). units: of the set; must be given where
 /// the method needs one. All must outlive it.
-std::unique_ptr<CullMethod> makeCullMethod(const std::string& name, const DrawScene& scene, const PvsUnits* units,
-                                           const WalkMethodOptions& options);
+std::unique_ptr<CullMethod> makeCullMethod(const std::string& name, const DrawScene& scene,
+                                           const PvsUnits* units, const WalkMethodOptions& options);
 
 }  // namespace sightline

@@ -21,7 +21,8 @@ const MethodReplay* methodOf(const WalkReport& report, std::string_view name) {
 
 /// The method whose parts are drawn: what the thesis is about, else the last that asks queries, else any.
 const MethodReplay* mainMethod(const WalkReport& report) {
-  for (const char* name : {"opti-chc++", "chc++", "chc", "stop-and-wait", "hiz", "pvs+hiz", "pvs+vfc", "vfc"}) {
+  for (const char* name :
+       {"opti-chc++", "chc++", "chc", "stop-and-wait", "hiz", "pvs+hiz", "pvs+vfc", "vfc"}) {
     if (const MethodReplay* m = methodOf(report, name)) return m;
   }
   for (const MethodReplay& m : report.replay.methods) {
@@ -84,8 +85,8 @@ std::string times(double slow, double fast) {
 }
 
 ReportTable methodsTable(const WalkReport& report) {
-  ReportTable table{.columns = {"method", "ms a frame", "frames/s", "1 % low", "0.1 % low", "against vfc", "GPU ms",
-                                "objects", "triangles", "queries", "submits", "false pixels", "frames with any",
+  ReportTable table{.columns = {"method", "ms a frame", "frames/s", "1 % low", "0.1 % low", "against vfc",
+                                "GPU ms", "objects", "triangles", "queries", "submits", "false pixels",
                                 "longest missing"}};
   const MethodReplay* vfc = methodOf(report, "vfc");
   const double vfc_ms = vfc == nullptr ? 0 : summarize(*vfc, 0, vfc->times.size()).mean;
@@ -93,12 +94,14 @@ ReportTable methodsTable(const WalkReport& report) {
     if (m.times.empty()) continue;
     const WalkSummary s = summarize(m, 0, std::max(m.times.size(), m.checks.size()));
     const bool checked = !m.checks.empty();
-    table.rows.push_back(
-        {m.name, digits(s.mean), digits(1000 / s.mean), digits(1000 / s.slowest_1), digits(1000 / s.slowest_01),
-         times(vfc_ms, s.mean), report.gpu_times ? digits(s.gpu) : "-", digits(s.objects),
-         shortCount(uint64_t(s.triangles + 0.5)), digits(s.queries), digits(s.submits),
-         checked ? std::to_string(s.false_pixels) : "-", checked ? std::to_string(s.false_frames) : "-",
-         !checked ? "-" : m.pops.empty() ? "0" : counted(m.pops.front().frames, "frame")});
+    table.rows.push_back({m.name, digits(s.mean), digits(1000 / s.mean), digits(1000 / s.slowest_1),
+                          digits(1000 / s.slowest_01), times(vfc_ms, s.mean),
+                          report.gpu_times ? digits(s.gpu) : "-", digits(s.objects),
+                          shortCount(uint64_t(s.triangles + 0.5)), digits(s.queries), digits(s.submits),
+                          checked ? std::to_string(s.false_pixels) : "-",
+                          !checked         ? "-"
+                          : m.pops.empty() ? "0"
+                                           : counted(m.pops.front().frames, "frame")});
   }
   const std::vector<TracedFrame>& traced = report.replay.traced;
   if (!traced.empty()) {
@@ -110,8 +113,8 @@ ReportTable methodsTable(const WalkReport& report) {
     const double ms = mean([](const TracedFrame& t) { return t.milliseconds; });
     table.rows.push_back({"traced", digits(ms), digits(1000 / ms), "-", "-", times(vfc_ms, ms), "-",
                           digits(mean([](const TracedFrame& t) { return t.drawables; })),
-                          shortCount(uint64_t(mean([](const TracedFrame& t) { return t.triangles; }) + 0.5)), "-", "-",
-                          "-", "-", "-"});
+                          shortCount(uint64_t(mean([](const TracedFrame& t) { return t.triangles; }) + 0.5)),
+                          "-", "-", "-", "-"});
   }
   return table;
 }
@@ -154,15 +157,15 @@ bool asksQueries(const MethodReplay& m) {
 template <size_t kParts>
 ReportChart partsChart(const WalkReport& report, const MethodReplay& m, const std::string& title,
                        const std::array<const char*, kParts>& names,
-                       std::array<double, kParts> FrameTimes::* parts) {
+                       std::array<double, kParts> FrameTimes::*parts) {
   ReportChart chart{.title = title,
                     .note = fmt::format("{}. {}", m.name, pointNote(report, Of::mean)),
                     .x = "frame",
                     .y = "ms",
                     .stacked = true};
   for (size_t part = 0; part < kParts; ++part) {
-    const auto points =
-        overFrames(m.times.size(), Of::mean, [&](size_t i) { return std::max(0.0, (m.times[i].*parts)[part]); });
+    const auto points = overFrames(m.times.size(), Of::mean,
+                                   [&](size_t i) { return std::max(0.0, (m.times[i].*parts)[part]); });
     const bool any = std::ranges::any_of(points, [](const ChartPoint& p) { return p.y > 0; });
     if (any) chart.series.push_back({.name = names[part], .points = points, .color = uint32_t(part)});
   }
@@ -194,11 +197,12 @@ void addParts(HtmlReport& page, const WalkReport& report) {
   charts.push_back(partsChart(report, *m, "Processor time by part", kCpuPartNames, &FrameTimes::cpu));
   page.charts(charts);
   const auto worst = std::ranges::max_element(m->times, {}, &FrameTimes::frame);
-  ReportSpans spans{.title = fmt::format("The slowest frame of {}: {}, {} ms", m->name, worst - m->times.begin(),
-                                         digits(worst->frame)),
-                    .note = "How much of it each part takes, put in a row: parts alternate many times in a frame.",
-                    .unit = "ms",
-                    .rows = {}};
+  ReportSpans spans{
+      .title = fmt::format("The slowest frame of {}: {}, {} ms", m->name, worst - m->times.begin(),
+                           digits(worst->frame)),
+      .note = "How much of it each part takes, put in a row: parts alternate many times in a frame.",
+      .unit = "ms",
+      .rows = {}};
   const auto row = [&](const std::string& name, const auto& names, const auto& parts) {
     std::vector<ReportSpan> bars;
     double at = 0;
@@ -218,60 +222,66 @@ void addQueries(HtmlReport& page, const WalkReport& report) {
   if (std::ranges::none_of(report.replay.methods, asksQueries)) return;
   page.section("Queries and submits");
   page.charts(
-      {methodsChart(report,
-                    {.title = "Queries a frame", .note = pointNote(report, Of::mean), .x = "frame", .y = "queries"},
-                    Of::mean, asksQueries, [](const MethodReplay& m, size_t i) { return double(m.counts[i].queries); }),
-       methodsChart(report,
-                    {.title = "Submits a frame", .note = pointNote(report, Of::mean), .x = "frame", .y = "submits"},
-                    Of::mean, asksQueries,
-                    [](const MethodReplay& m, size_t i) { return double(m.counts[i].submits); })});
+      {methodsChart(
+           report,
+           {.title = "Queries a frame", .note = pointNote(report, Of::mean), .x = "frame", .y = "queries"},
+           Of::mean, asksQueries,
+           [](const MethodReplay& m, size_t i) { return double(m.counts[i].queries); }),
+       methodsChart(
+           report,
+           {.title = "Submits a frame", .note = pointNote(report, Of::mean), .x = "frame", .y = "submits"},
+           Of::mean, asksQueries,
+           [](const MethodReplay& m, size_t i) { return double(m.counts[i].submits); })});
 }
 
 /// Triangles or objects a frame, against the fewest possible.
 ReportChart drawnChart(const WalkReport& report, const std::string& title, const std::string& y,
-                       uint64_t FrameCounts::* drawn, uint64_t CheckedFrame::* optimal) {
+                       uint64_t FrameCounts::*drawn, uint64_t CheckedFrame::*optimal) {
   constexpr uint32_t kOptimalColor = 6;
   ReportChart chart = methodsChart(
-      report, {.title = title, .note = pointNote(report, Of::mean), .x = "frame", .y = y, .log_y = true}, Of::mean,
-      [](const MethodReplay& m) { return m.name != "none" && m.name != "hiz-meshlets"; },
+      report, {.title = title, .note = pointNote(report, Of::mean), .x = "frame", .y = y, .log_y = true},
+      Of::mean, [](const MethodReplay& m) { return m.name != "none" && m.name != "hiz-meshlets"; },
       [&](const MethodReplay& m, size_t i) { return double(m.counts[i].*drawn); });
   const MethodReplay* checked = nullptr;
   for (const MethodReplay& m : report.replay.methods) {
     if (!m.checks.empty() && (checked == nullptr || m.checks.size() > checked->checks.size())) checked = &m;
   }
   if (checked != nullptr) {
-    chart.series.push_back({.name = "optimal",
-                            .points = overFrames(checked->checks.size(), Of::mean,
-                                                 [&](size_t i) { return double(checked->checks[i].*optimal); }),
-                            .dashed = true,
-                            .color = kOptimalColor});
+    chart.series.push_back(
+        {.name = "optimal",
+         .points = overFrames(checked->checks.size(), Of::mean,
+                              [&](size_t i) { return double(checked->checks[i].*optimal); }),
+         .dashed = true,
+         .color = kOptimalColor});
   }
   return chart;
 }
 
 void addDrawn(HtmlReport& page, const WalkReport& report) {
   page.section("What is drawn");
-  ReportChart triangles =
-      drawnChart(report, "Triangles a frame", "triangles", &FrameCounts::triangles, &CheckedFrame::optimal_triangles);
+  ReportChart triangles = drawnChart(report, "Triangles a frame", "triangles", &FrameCounts::triangles,
+                                     &CheckedFrame::optimal_triangles);
   if (!report.replay.traced.empty()) {
     ChartSeries seen{.name = "triangles with a pixel, traced", .dots = true, .color = 9};
     const size_t step = (report.replay.traced.size() + 29) / 30;
     for (size_t i = 0; i < report.replay.traced.size(); i += step) {
-      seen.points.push_back({double(report.replay.traced[i].frame), double(report.replay.traced[i].triangles)});
+      seen.points.push_back(
+          {double(report.replay.traced[i].frame), double(report.replay.traced[i].triangles)});
     }
     triangles.series.push_back(seen);
   }
   page.charts({triangles, drawnChart(report, "Objects a frame", "objects", &FrameCounts::objects,
                                      &CheckedFrame::optimal_drawables)});
   page.text(
-      "Optimal: the objects, parts of at most so many triangles, that have a pixel, and all of their triangles. No "
+      "Optimal: the objects, parts of at most so many triangles, that have a pixel, and all of their "
+      "triangles. No "
       "method that draws objects whole can draw less.");
 }
 
 /// Tables 7.5 and 8.1: what a set is worth.
 void addSetTable(HtmlReport& page, const WalkReport& report) {
-  ReportTable table{.columns = {"with", "without", "ms without", "ms with", "factor", "triangles drawn", "share",
-                                "factor x share", "frames outside"}};
+  ReportTable table{.columns = {"with", "without", "ms without", "ms with", "factor", "triangles drawn",
+                                "share", "factor x share", "frames outside"}};
   table.text_columns = 2;
   for (const auto& [with, without] : {std::pair("pvs", "none"), {"pvs+vfc", "vfc"}, {"pvs+hiz", "hiz"}}) {
     const MethodReplay *a = methodOf(report, with), *b = methodOf(report, without);
@@ -279,7 +289,8 @@ void addSetTable(HtmlReport& page, const WalkReport& report) {
     const WalkSummary fast = summarize(*a, 0, a->times.size()), slow = summarize(*b, 0, b->times.size());
     const double share = slow.triangles > 0 ? fast.triangles / slow.triangles : 0;
     table.rows.push_back({with, without, digits(slow.mean), digits(fast.mean), times(slow.mean, fast.mean),
-                          shortCount(uint64_t(fast.triangles + 0.5)), fmt::format("{} %", digits(100 * share)),
+                          shortCount(uint64_t(fast.triangles + 0.5)),
+                          fmt::format("{} %", digits(100 * share)),
                           fast.mean > 0 ? fmt::format("{:.0f} %", 100 * slow.mean / fast.mean * share) : "-",
                           std::to_string(fast.outside)});
   }
@@ -287,13 +298,15 @@ void addSetTable(HtmlReport& page, const WalkReport& report) {
   page.section("What the set is worth");
   page.table(table);
   page.text(
-      "A device whose time is all for triangles would be faster by 1 / share: the last column but one says how much of "
+      "A device whose time is all for triangles would be faster by 1 / share: the last column but one says "
+      "how much of "
       "that is reached.");
 }
 
 void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pictures) {
-  ReportTable table{.columns = {"method", "false pixels", "of all pixels", "most in a frame", "objects went missing",
-                                "longest", "of object", "from frame"}};
+  ReportTable table{.columns = {"method", "false pixels", "of all pixels", "frames with any",
+                                "most in a frame", "objects went missing", "longest", "of object",
+                                "from frame"}};
   const double pixels = double(report.width) * report.height;
   bool any = false;
   for (const MethodReplay& m : report.replay.methods) {
@@ -301,25 +314,30 @@ void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pi
     any = true;
     const WalkSummary s = summarize(m, 0, m.checks.size());
     const bool popped = !m.pops.empty();
-    table.rows.push_back({m.name, std::to_string(s.false_pixels),
-                          fmt::format("{:.3g} %", 100 * double(s.false_pixels) / (pixels * double(m.checks.size()))),
-                          std::to_string(s.most_false), counted(m.pop_count, "time"),
-                          popped ? counted(m.pops.front().frames, "frame") : "-",
-                          popped ? std::to_string(m.pops.front().drawable) : "-",
-                          popped ? std::to_string(m.pops.front().first_frame) : "-"});
+    table.rows.push_back(
+        {m.name, std::to_string(s.false_pixels),
+         fmt::format("{:.3g} %", 100 * double(s.false_pixels) / (pixels * double(m.checks.size()))),
+         std::to_string(s.false_frames), std::to_string(s.most_false), counted(m.pop_count, "time"),
+         popped ? counted(m.pops.front().frames, "frame") : "-",
+         popped ? std::to_string(m.pops.front().drawable) : "-",
+         popped ? std::to_string(m.pops.front().first_frame) : "-"});
   }
   if (!any) return;
   page.section("What is wrong");
   page.text(
-      "Every frame's depth is compared, bit by bit, with that of a frame in which everything is drawn: a pixel is "
-      "false if it shows something farther away. An object is missing for as many frames in a row as it has false "
+      "Every frame's depth is compared, bit by bit, with that of a frame in which everything is drawn: a "
+      "pixel is "
+      "false if it shows something farther away. An object is missing for as many frames in a row as it has "
+      "false "
       "pixels.");
   page.table(table);
   uint64_t other = 0, unexplained = 0;
-  for (const TracedFrame& t : report.replay.traced) other += t.other_pixels, unexplained += t.unexplained_pixels;
+  for (const TracedFrame& t : report.replay.traced)
+    other += t.other_pixels, unexplained += t.unexplained_pixels;
   if (!report.replay.traced.empty()) {
     page.text(fmt::format(
-        "{} traced frames, {} pixels each: {} show another object than the one drawn there, {} of them farther than "
+        "{} traced frames, {} pixels each: {} show another object than the one drawn there, {} of them "
+        "farther than "
         "1/128 pixel from where tracing finds the one drawn (surfaces in the same place are among them).",
         report.replay.traced.size(), uint64_t(pixels), other, unexplained));
   }
@@ -331,10 +349,12 @@ void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pi
 std::string introText(const WalkReport& report) {
   const WalkReplay& r = report.replay;
   return fmt::format(
-      "{} along {}, {} x {} pixels, by {} on {}. {} a method, the order of methods rotated; one more replay, the "
+      "{} along {}, {} x {} pixels, by {} on {}. {} a method, the order of methods rotated; one more replay, "
+      "the "
       "first, is dropped.{}",
       counted(report.frames.cameras.size(), "frame"), report.path, report.width, report.height,
-      counted(r.methods.size(), "culling method"), report.device.name, counted(report.options.repeats, "whole replay"),
+      counted(r.methods.size(), "culling method"), report.device.name,
+      counted(report.options.repeats, "whole replay"),
       r.complete          ? ""
       : r.problem.empty() ? " Stopped before the end: what follows is of the frames that were drawn."
                           : " Ended early: " + r.problem + ".");
@@ -348,9 +368,10 @@ HtmlReport walkPage(const WalkReport& report, const WalkPictures& pictures, cons
   page.section("Methods");
   page.table(methodsTable(report));
   page.text(
-      "1 % low: frames a second of the slowest hundredth of frames, on average. GPU ms: from a frame's first command to "
+      "1 % low: frames a second of the slowest hundredth of frames, on average. GPU ms: from a frame's first "
+      "command to "
       "its last.");
-  for (const LeftOutMethod& m : report.left_out) page.text(fmt::format("{} is left out: {}.", m.name, m.why));
+  for (const std::string& line : leftOutLines(report)) page.text(line + ".");
   const std::vector<WalkStretch> stretches = stretchesOf(report.frames);
   if (stretches.size() > 1 && stretches.size() <= 8) page.table(stretchTable(report, stretches));
   addTimes(page, report);
@@ -358,8 +379,9 @@ HtmlReport walkPage(const WalkReport& report, const WalkPictures& pictures, cons
   addQueries(page, report);
   addDrawn(page, report);
   if (!pictures.drawn.empty()) {
-    page.text("From above: what the frame drew green, the rest of the scene grey, the camera's view between orange "
-              "lines.");
+    page.text(
+        "From above: what the frame drew green, the rest of the scene grey, the camera's view between orange "
+        "lines.");
     page.pictures(pictures.drawn);
   }
   addSetTable(page, report);

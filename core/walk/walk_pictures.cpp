@@ -41,7 +41,7 @@ class AboveView {
 
  private:
   glm::vec3 middle_, right_{1, 0, 0}, down_ = glm::normalize(glm::vec3(0, -1.0f, -0.55f)),
-                     up_ = glm::cross(right_, down_);
+                                      up_ = glm::cross(right_, down_);
   float half_u_ = 1, half_v_ = 1, distance_ = 1;
   uint32_t width_ = 1, height_ = 1;
 };
@@ -56,7 +56,8 @@ void drawLine(Image& image, glm::dvec2 from, glm::dvec2 to, double width, Rgb co
       for (int dx = -reach; dx <= reach; ++dx) {
         const double x = std::floor(p.x) + dx, y = std::floor(p.y) + dy;
         const glm::dvec2 off = glm::dvec2(x + 0.5, y + 0.5) - p;
-        if (x < 0 || y < 0 || x >= image.width || y >= image.height || glm::dot(off, off) > width * width / 4) continue;
+        if (x < 0 || y < 0 || x >= image.width || y >= image.height || glm::dot(off, off) > width * width / 4)
+          continue;
         image.at(uint32_t(x), uint32_t(y)) = color;
       }
     }
@@ -101,8 +102,8 @@ Image falsePicture(const Scene& scene, Tracer& tracer, const Camera& camera, std
   return image;
 }
 
-Image drawnPicture(const Scene& scene, Tracer& tracer, const Drawables& drawables, std::span<const uint32_t> drawn,
-                   const Camera& camera, uint32_t size) {
+Image drawnPicture(const Scene& scene, Tracer& tracer, const Drawables& drawables,
+                   std::span<const uint32_t> drawn, const Camera& camera, uint32_t size) {
   const Bounds bounds = sceneBounds(scene);
   const AboveView view(bounds, size);
   std::vector<uint8_t> is_drawn(scene.triangleCount(), 0);
@@ -111,31 +112,32 @@ Image drawnPicture(const Scene& scene, Tracer& tracer, const Drawables& drawable
   }
   Image image(view.width(), view.height());
   const float away = glm::length(bounds.high - bounds.low) * 1e-5f;
-  renderTile(
-      [&](std::span<const Ray> rays, std::span<Hit> hits) { tracer.traceRays(rays, hits); },
-      {0, 0, image.width, image.height},
-      [&](uint32_t x, uint32_t y) {
-        return view.ray((x + 0.5) / kSamplesPerAxis, (y + 0.5) / kSamplesPerAxis);
-      },
-      [&](const Ray& ray, const Hit& hit) {
-        const glm::vec3 direction(ray.direction);
-        const glm::vec3 place = glm::vec3(ray.origin) + direction * hit.t;
-        return makeRay(place + facingNormal(scene, hit.triangle, direction) * away, kToSun);
-      },
-      [&](uint32_t x, uint32_t y, std::span<const Ray>, std::span<const Hit> hits, std::span<const Hit> shadows) {
-        glm::vec3 light(0);
-        for (size_t i = 0; i < hits.size(); ++i) {
-          const uint32_t id = hits[i].triangle;
-          if (id == kNoTriangle) {
-            light += glm::vec3(0.97f);
-            continue;
-          }
-          const float sunlit = shadows[i].triangle == kNoTriangle ? 1.0f : 0.0f;
-          const glm::vec3 color = is_drawn[id] != 0 ? kVisibleColor * 1.2f : kHiddenColor;
-          light += color * lightOn(facingNormal(scene, id, view.direction()), view.direction(), kToSun, sunlit);
-        }
-        image.at(x, y) = encode(light / float(hits.size()));
-      });
+  renderTile([&](std::span<const Ray> rays, std::span<Hit> hits) { tracer.traceRays(rays, hits); },
+             {0, 0, image.width, image.height},
+             [&](uint32_t x, uint32_t y) {
+               return view.ray((x + 0.5) / kSamplesPerAxis, (y + 0.5) / kSamplesPerAxis);
+             },
+             [&](const Ray& ray, const Hit& hit) {
+               const glm::vec3 direction(ray.direction);
+               const glm::vec3 place = glm::vec3(ray.origin) + direction * hit.t;
+               return makeRay(place + facingNormal(scene, hit.triangle, direction) * away, kToSun);
+             },
+             [&](uint32_t x, uint32_t y, std::span<const Ray>, std::span<const Hit> hits,
+                 std::span<const Hit> shadows) {
+               glm::vec3 light(0);
+               for (size_t i = 0; i < hits.size(); ++i) {
+                 const uint32_t id = hits[i].triangle;
+                 if (id == kNoTriangle) {
+                   light += glm::vec3(0.97f);
+                   continue;
+                 }
+                 const float sunlit = shadows[i].triangle == kNoTriangle ? 1.0f : 0.0f;
+                 const glm::vec3 color = is_drawn[id] != 0 ? kVisibleColor * 1.2f : kHiddenColor;
+                 light += color * lightOn(facingNormal(scene, id, view.direction()), view.direction(), kToSun,
+                                          sunlit);
+               }
+               image.at(x, y) = encode(light / float(hits.size()));
+             });
   drawCamera(image, view, camera, 0.12f * glm::length(bounds.high - bounds.low));
   return image;
 }

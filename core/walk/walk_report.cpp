@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "core/base/text.h"
 #include "core/bake/report_json.h"
+#include "core/base/text.h"
 #include "core/io/csv.h"
 
 namespace sightline {
@@ -25,8 +25,12 @@ Json countsJson(const WalkSummary& s) {
 }
 
 Json timesJson(const WalkSummary& s) {
-  return {{"mean_ms", s.mean},           {"median_ms", s.median}, {"slowest_1_percent_ms", s.slowest_1},
-          {"slowest_01_percent_ms", s.slowest_01}, {"gpu_ms", s.gpu},       {"cpu_ms", s.cpu}};
+  return {{"mean_ms", s.mean},
+          {"median_ms", s.median},
+          {"slowest_1_percent_ms", s.slowest_1},
+          {"slowest_01_percent_ms", s.slowest_01},
+          {"gpu_ms", s.gpu},
+          {"cpu_ms", s.cpu}};
 }
 
 Json methodJson(const WalkReport& report, const MethodReplay& method) {
@@ -37,13 +41,18 @@ Json methodJson(const WalkReport& report, const MethodReplay& method) {
   if (!method.checks.empty()) {
     Json pops = Json::array();
     for (const Pop& p : method.pops) {
-      pops.push_back({{"drawable", p.drawable}, {"first_frame", p.first_frame}, {"frames", p.frames},
+      pops.push_back({{"drawable", p.drawable},
+                      {"first_frame", p.first_frame},
+                      {"frames", p.frames},
                       {"most_pixels", p.most_pixels}});
     }
     const WalkSummary checked = summarize(method, 0, method.checks.size());
-    json["check"] = {{"frames", method.checks.size()},         {"false_pixels", checked.false_pixels},
-                     {"frames_with_false", checked.false_frames}, {"most_false_pixels", checked.most_false},
-                     {"near_pixels", checked.near_pixels},     {"times_missing", method.pop_count},
+    json["check"] = {{"frames", method.checks.size()},
+                     {"false_pixels", checked.false_pixels},
+                     {"frames_with_false", checked.false_frames},
+                     {"most_false_pixels", checked.most_false},
+                     {"near_pixels", checked.near_pixels},
+                     {"times_missing", method.pop_count},
                      {"longest_missing", pops}};
   }
   Json stretches = Json::array();
@@ -80,9 +89,13 @@ Json optionsJson(const ReplayOptions& o) {
 Json tracedJson(const WalkReplay& replay) {
   Json traced = Json::array();
   for (const TracedFrame& t : replay.traced) {
-    traced.push_back({{"frame", t.frame}, {"ms", t.milliseconds}, {"objects", t.drawables},
-                      {"triangles", t.triangles}, {"object_triangles", t.drawable_triangles},
-                      {"other_pixels", t.other_pixels}, {"unexplained_pixels", t.unexplained_pixels}});
+    traced.push_back({{"frame", t.frame},
+                      {"ms", t.milliseconds},
+                      {"objects", t.drawables},
+                      {"triangles", t.triangles},
+                      {"object_triangles", t.drawable_triangles},
+                      {"other_pixels", t.other_pixels},
+                      {"unexplained_pixels", t.unexplained_pixels}});
   }
   return traced;
 }
@@ -101,7 +114,8 @@ WalkSummary summarize(const MethodReplay& method, size_t begin, size_t end) {
     const FrameTimes& t = method.times[i];
     frames.push_back(t.frame);
     s.gpu += t.gpu_frame;
-    for (const CpuPart part : {CpuPart::traverse, CpuPart::record, CpuPart::submit}) s.cpu += t.cpu[size_t(part)];
+    for (const CpuPart part : {CpuPart::traverse, CpuPart::record, CpuPart::submit})
+      s.cpu += t.cpu[size_t(part)];
   }
   if (!frames.empty()) {
     std::ranges::sort(frames);
@@ -147,17 +161,36 @@ std::vector<WalkStretch> stretchesOf(const WalkFrames& frames) {
   return stretches;
 }
 
+std::vector<std::string> leftOutLines(const WalkReport& report) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> reasons;
+  for (const LeftOutMethod& m : report.left_out) {
+    const auto found =
+        std::ranges::find(reasons, m.why, &std::pair<std::string, std::vector<std::string>>::first);
+    if (found == reasons.end()) {
+      reasons.push_back({m.why, {m.name}});
+    } else {
+      found->second.push_back(m.name);
+    }
+  }
+  std::vector<std::string> lines;
+  for (const auto& [why, names] : reasons) {
+    lines.push_back(
+        fmt::format("{} {} left out: {}", fmt::join(names, ", "), names.size() == 1 ? "is" : "are", why));
+  }
+  return lines;
+}
+
 std::string walkTable(const WalkReport& report) {
-  std::string table = fmt::format("{:<14} {:>9} {:>9} {:>9} {:>8} {:>9} {:>10} {:>8} {:>8} {:>8} {:>12}\n", "method",
-                                  "ms", "slow 1 %", "0.1 %", "gpu ms", "objects", "triangles", "queries", "submits",
-                                  "waits", "false pixels");
+  std::string table = fmt::format("{:<14} {:>9} {:>9} {:>9} {:>8} {:>9} {:>10} {:>8} {:>8} {:>8} {:>12}\n",
+                                  "method", "ms", "slow 1 %", "0.1 %", "gpu ms", "objects", "triangles",
+                                  "queries", "submits", "waits", "false pixels");
   for (const MethodReplay& m : report.replay.methods) {
     if (m.times.empty()) continue;
     const WalkSummary s = summarize(m, 0, report.frames.cameras.size());
-    table += fmt::format("{:<14} {:>9.3f} {:>9.3f} {:>9.3f} {:>8} {:>9.1f} {:>10} {:>8.1f} {:>8.1f} {:>8.1f} {:>12}\n",
-                         m.name, s.mean, s.slowest_1, s.slowest_01,
-                         report.gpu_times ? fmt::format("{:.3f}", s.gpu) : "-", s.objects,
-                         shortCount(uint64_t(s.triangles + 0.5)), s.queries, s.submits, s.waits, falseText(m, s));
+    table += fmt::format(
+        "{:<14} {:>9.3f} {:>9.3f} {:>9.3f} {:>8} {:>9.1f} {:>10} {:>8.1f} {:>8.1f} {:>8.1f} {:>12}\n", m.name,
+        s.mean, s.slowest_1, s.slowest_01, report.gpu_times ? fmt::format("{:.3f}", s.gpu) : "-", s.objects,
+        shortCount(uint64_t(s.triangles + 0.5)), s.queries, s.submits, s.waits, falseText(m, s));
   }
   if (!report.replay.traced.empty()) {
     double ms = 0, objects = 0, triangles = 0;
@@ -165,8 +198,8 @@ std::string walkTable(const WalkReport& report) {
       ms += t.milliseconds, objects += double(t.drawables), triangles += double(t.triangles);
     }
     const double n = double(report.replay.traced.size());
-    table += fmt::format("{:<14} {:>9.3f} {:>9} {:>9} {:>8} {:>9.1f} {:>10}   ({} frames, {})\n", "traced", ms / n, "-",
-                         "-", "-", objects / n, shortCount(uint64_t(triangles / n + 0.5)),
+    table += fmt::format("{:<14} {:>9.3f} {:>9} {:>9} {:>8} {:>9.1f} {:>10}   ({} frames, {})\n", "traced",
+                         ms / n, "-", "-", "-", objects / n, shortCount(uint64_t(triangles / n + 0.5)),
                          report.replay.traced.size(), report.tracer);
   }
   return table;
@@ -176,30 +209,30 @@ Json walkJson(const WalkReport& report) {
   Json methods = Json::array(), left_out = Json::array();
   for (const MethodReplay& m : report.replay.methods) methods.push_back(methodJson(report, m));
   for (const LeftOutMethod& m : report.left_out) left_out.push_back({{"name", m.name}, {"why", m.why}});
-  return {{"sightline", report.version},
-          {"complete", report.replay.complete},
-          {"problem", report.replay.problem},
-          {"scene",
-           {{"name", report.scene.name},
-            {"hash", hashText(report.scene.hash)},
-            {"triangles", report.scene.triangles},
-            {"drawables", report.drawables},
-            {"split", report.split}}},
-          {"device",
-           {{"id", report.device.id}, {"name", report.device.name}, {"driver", report.device.driver}}},
-          {"tracer", report.tracer},
-          {"path", report.path},
-          {"pvs", report.pvs},
-          {"frames", report.frames.cameras.size()},
-          {"cuts", report.frames.cuts},
-          {"width", report.width},
-          {"height", report.height},
-          {"fov", report.fov},
-          {"options", optionsJson(report.options)},
-          {"seconds", report.replay.seconds},
-          {"methods", methods},
-          {"left_out", left_out},
-          {"traced", tracedJson(report.replay)}};
+  return {
+      {"sightline", report.version},
+      {"complete", report.replay.complete},
+      {"problem", report.replay.problem},
+      {"scene",
+       {{"name", report.scene.name},
+        {"hash", hashText(report.scene.hash)},
+        {"triangles", report.scene.triangles},
+        {"drawables", report.drawables},
+        {"split", report.split}}},
+      {"device", {{"id", report.device.id}, {"name", report.device.name}, {"driver", report.device.driver}}},
+      {"tracer", report.tracer},
+      {"path", report.path},
+      {"pvs", report.pvs},
+      {"frames", report.frames.cameras.size()},
+      {"cuts", report.frames.cuts},
+      {"width", report.width},
+      {"height", report.height},
+      {"fov", report.fov},
+      {"options", optionsJson(report.options)},
+      {"seconds", report.replay.seconds},
+      {"methods", methods},
+      {"left_out", left_out},
+      {"traced", tracedJson(report.replay)}};
 }
 
 std::string walkCsv(const WalkReport& report) {
@@ -208,10 +241,10 @@ std::string walkCsv(const WalkReport& report) {
     columns.push_back(fmt::format("cpu_{}_ms", part));
   }
   for (const char* part : kGpuPartNames) columns.push_back(fmt::format("gpu_{}_ms", part));
-  for (const char* name : {"submits", "draws", "objects", "triangles", "queries", "multi_queries", "failed_queries",
-                           "retest_queries", "query_boxes", "node_visits", "waits", "outside", "false_pixels",
-                           "near_pixels", "largest_false", "missing_objects", "optimal_objects",
-                           "optimal_triangles"}) {
+  for (const char* name :
+       {"submits", "draws", "objects", "triangles", "queries", "multi_queries", "failed_queries",
+        "retest_queries", "query_boxes", "node_visits", "waits", "outside", "false_pixels", "near_pixels",
+        "largest_false", "missing_objects", "optimal_objects", "optimal_triangles"}) {
     columns.emplace_back(name);
   }
   Csv csv(columns);
@@ -219,8 +252,12 @@ std::string walkCsv(const WalkReport& report) {
     const size_t frames = std::max({m.times.size(), m.counts.size(), m.checks.size()});
     for (size_t i = 0; i < frames; ++i) {
       std::vector<std::string> row = {m.name, std::to_string(i)};
-      const auto number = [&](bool known, double value) { row.push_back(known ? fmt::format("{}", value) : ""); };
-      const auto count = [&](bool known, uint64_t value) { row.push_back(known ? std::to_string(value) : ""); };
+      const auto number = [&](bool known, double value) {
+        row.push_back(known ? fmt::format("{}", value) : "");
+      };
+      const auto count = [&](bool known, uint64_t value) {
+        row.push_back(known ? std::to_string(value) : "");
+      };
       const bool timed = i < m.times.size(), counted = i < m.counts.size(), checked = i < m.checks.size();
       const FrameTimes t = timed ? m.times[i] : FrameTimes{};
       number(timed, t.frame);
@@ -228,14 +265,14 @@ std::string walkCsv(const WalkReport& report) {
       for (const double part : t.cpu) number(timed, part);
       for (const double part : t.gpu) number(timed && report.gpu_times, part);
       const FrameCounts c = counted ? m.counts[i] : FrameCounts{};
-      for (const uint64_t value : {c.submits, c.draws, c.objects, c.triangles, c.queries, c.multi_queries,
-                                   c.failed_queries, c.retest_queries, c.query_boxes, c.node_visits, c.waits,
-                                   uint64_t(c.outside)}) {
+      for (const uint64_t value :
+           {c.submits, c.draws, c.objects, c.triangles, c.queries, c.multi_queries, c.failed_queries,
+            c.retest_queries, c.query_boxes, c.node_visits, c.waits, uint64_t(c.outside)}) {
         count(counted, value);
       }
       const CheckedFrame k = checked ? m.checks[i] : CheckedFrame{};
-      for (const uint64_t value : {k.false_pixels, k.near_pixels, k.largest, k.missing, k.optimal_drawables,
-                                   k.optimal_triangles}) {
+      for (const uint64_t value :
+           {k.false_pixels, k.near_pixels, k.largest, k.missing, k.optimal_drawables, k.optimal_triangles}) {
         count(checked, value);
       }
       csv.row(row);
@@ -256,9 +293,10 @@ std::vector<std::string> pastFalse(const WalkReport& report, uint64_t max_false)
                                   worst - m.checks.begin()));
     }
     if (s.near_pixels > 0) {
-      lines.push_back(fmt::format("{}: {} pixels are nearer than with everything drawn: the device draws the same "
-                                  "triangles in two ways",
-                                  m.name, s.near_pixels));
+      lines.push_back(
+          fmt::format("{}: {} pixels are nearer than with everything drawn: the device draws the same "
+                      "triangles in two ways",
+                      m.name, s.near_pixels));
     }
   }
   return lines;

@@ -34,12 +34,12 @@ struct WalkReport {
 
 /// A method over a range of frames.
 struct WalkSummary {
-  double mean = 0, median = 0;            ///< milliseconds a frame
-  double slowest_1 = 0, slowest_01 = 0;   ///< mean of the slowest hundredth and thousandth, one frame at least
-  double gpu = 0;                         ///< mean milliseconds of FrameTimes::gpu_frame
-  double cpu = 0;                         ///< of the processor's parts but the waits
+  double mean = 0, median = 0;           ///< milliseconds a frame
+  double slowest_1 = 0, slowest_01 = 0;  ///< mean of the slowest hundredth and thousandth, one frame at least
+  double gpu = 0;                        ///< mean milliseconds of FrameTimes::gpu_frame
+  double cpu = 0;                        ///< of the processor's parts but the waits
   double objects = 0, triangles = 0, queries = 0, submits = 0, waits = 0;  ///< means a frame
-  uint64_t outside = 0;                   ///< frames outside all cells
+  uint64_t outside = 0;                                                    ///< frames outside all cells
   uint64_t false_pixels = 0, false_frames = 0, near_pixels = 0, most_false = 0;
 };
 /// Frames begin .. end - 1, as far as there are any.
@@ -50,6 +50,9 @@ struct WalkStretch {
   uint32_t begin = 0, end = 0;
 };
 std::vector<WalkStretch> stretchesOf(const WalkFrames& frames);
+
+/// "pvs, pvs+vfc are left out: why", a line a reason.
+std::vector<std::string> leftOutLines(const WalkReport& report);
 
 /// For people: a line a method.
 std::string walkTable(const WalkReport& report);
