@@ -153,13 +153,13 @@ std::string statusText(const ReplayProgress& p, double seconds) {
                      100 * p.done / std::max<uint64_t>(p.all, 1), shortDuration(left));
 }
 
-/// A frame in the middle of each stretch between cuts, of the first three and the last.
+/// The frames in the middle of the first stretch between cuts and of the last.
 std::vector<uint32_t> framesToShow(const WalkFrames& frames) {
   std::vector<uint32_t> shown;
   const std::vector<WalkStretch> stretches = stretchesOf(frames);
-  for (size_t i = 0; i < stretches.size(); ++i) {
-    if (i < 2 || i + 1 == stretches.size())
-      shown.push_back(stretches[i].begin + (stretches[i].end - stretches[i].begin) / 2);
+  for (const WalkStretch& s : {stretches.front(), stretches.back()}) {
+    const uint32_t middle = s.begin + (s.end - s.begin) / 2;
+    if (shown.empty() || shown.back() != middle) shown.push_back(middle);
   }
   return shown;
 }

@@ -139,7 +139,7 @@ class SoftwareWalkDevice : public WalkDevice {
   }
   bool timesGpu() const override { return false; }
   std::string whyNot(const std::string& method) const override {
-    return walkMethod(method).on_gpu ? method + " chooses on a GPU what is drawn; cpu has none" : "";
+    return walkMethod(method).on_gpu ? "a GPU must choose what is drawn, and cpu has none" : "";
   }
   std::unique_ptr<WalkPlayer> play(const std::string& method, const WalkMethodOptions& options) override {
     return std::make_unique<SoftwarePlayer>(

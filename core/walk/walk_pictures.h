@@ -15,6 +15,6 @@ Image falsePicture(const Scene& scene, Tracer& tracer, const Camera& camera, std
 /// The whole scene obliquely from above, what a frame drew green, the rest grey, what the camera sees between
 /// orange lines. drawn: drawables. size: pixels across.
 Image drawnPicture(const Scene& scene, Tracer& tracer, const Drawables& drawables,
-                   std::span<const uint32_t> drawn, const Camera& camera, uint32_t size = 1100);
+                   std::span<const uint32_t> drawn, const Camera& camera, uint32_t size = 720);
 
 }  // namespace sightline

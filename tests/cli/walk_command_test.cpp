@@ -42,7 +42,9 @@ TEST_F(WalkCommandTest, WritesReportTablePageAndPictures) {
   EXPECT_EQ(report["traced"].size(), 3u);
   for (const json& method : report["methods"]) {
     EXPECT_EQ(method["stretches"].size(), 3u);
-    if (method["name"] != "late") EXPECT_EQ(method["check"]["false_pixels"], 0) << method["name"];
+    if (method["name"] != "late") {
+      EXPECT_EQ(method["check"]["false_pixels"], 0) << method["name"];
+    }
   }
   const std::string csv = readText(at("r.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 7 * 60);
@@ -95,8 +97,10 @@ TEST_F(WalkCommandTest, SaysWhatIsWrong) {
   expectRun(walk("--methods pvs"), 2, {"--methods: pvs takes the sets of a bake: give it --pvs OUT.pvs"});
   expectRun(walk("--methods vcf"), 2, {"no culling method is called 'vcf'", "did you mean vfc?"});
   expectRun(walk("--methods vfc,vfc"), 2, {"vfc is named twice"});
-  expectRun(walk("--methods hiz"), 1, {"hiz cannot run on drawing on the processor: hiz chooses on a GPU"});
-  expectRun(walk("--resolution 0x3"), 2, {"--resolution: 0x3 is not WIDTHxHEIGHT, each 1 to 16384"});
+  expectRun(walk("--methods hiz"), 1,
+            {"hiz cannot run on drawing on the processor: a GPU must choose what is drawn"});
+  expectRun("walk " + at("c.glb") + " --path " + at("w.json") + " --device cpu --resolution 0x3", 2,
+            {"--resolution: 0x3 is not WIDTHxHEIGHT, each 1 to 16384"});
   expectRun(walk("--check none --max-false 0"), 2, {"--max-false: takes --check all"});
   expectRun("walk " + at("c.glb") + " --path views:0 --device cpu", 2,
             {"views:CELL takes the cell of a bake"});

