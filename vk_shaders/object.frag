@@ -1,5 +1,5 @@
 #version 460
-// Which drawable a pixel shows. SL_PLAIN: not where it has a hole. SL_GLASS: the colour of glass instead.
+// Which drawable a pixel shows. SL_PLAIN: not where it has a hole, or no back. SL_GLASS: the colour of glass instead.
 #extension GL_GOOGLE_include_directive : require
 #include "vk_shaders/draw.glsl"
 #include "core/shared/glass_colour.h"
@@ -24,6 +24,7 @@ void main() {
 #if SL_PLAIN
   if (SL_DRAW.surfaces != 0ul) {
     uint surface = SL_SURFACE_WORD(kSurfaceHeaderWords + slot);
+    if ((surface & kSurfaceFrontOnly) != 0u && !gl_FrontFacing) discard;
     if ((surface & kSurfaceMasked) != 0u && !maskHolds(0u, surface & kSurfaceIndex, shares.x, shares.y)) discard;
   }
 #endif

@@ -9,14 +9,12 @@ namespace sightline {
 /// they hold:
 ///
 /// - 2^-20 of their coordinates and of their distance from the eye on each axis, for the rounding of
-/// positions;
-/// - 1/128 pixel at their largest depth: devices snap corners to 1/256 pixel, so that a box and a triangle in
-/// it may
-///   each be moved by half of that, in opposite directions;
+///   positions;
+/// - 1/128 pixel at their largest depth: devices snap corners to 1/256 pixel (subPixelPrecisionBits of 8 or
+///   more), so that a box and a triangle in it may each be moved by half of that, in opposite directions;
 /// - 2^-20 of largest depth squared over least: depth is linear in the image, and devices find it there to
-/// about 2^-22
-///   of the greatest (the nearest) that a face has, which far away is more than places are known to. That is
-///   what a triangle may lose and a box, up to twice as near, may gain.
+///   about 2^-22 of the greatest (the nearest) that a face has, which far away is more than places are known
+///   to. That is what a triangle may lose and a box, up to twice as near, may gain.
 ///
 /// So whatever in the box covers a pixel of an image lies, there, behind the grown box's faces, or on them.
 /// Boxes in a box grow to boxes in the grown one.
@@ -24,8 +22,9 @@ class BoxGuard {
  public:
   explicit BoxGuard(const Camera& camera);
 
-  /// The grown box; nothing where it would reach the near plane: such a box cannot be asked about, as its
-  /// faces are cut away there. What holds the camera, and what is partly behind it, is among them.
+  /// The grown box; nothing where it would reach the near plane, or be less than half as far as the box: such
+  /// a box cannot be asked about, as its faces are cut away there, or as its depth is off by too much. What
+  /// holds the camera, and what is partly behind it, is among them.
   std::optional<AxisBox> grown(const AxisBox& box) const;
 
   const Frustum& frustum() const { return frustum_; }

@@ -2,7 +2,7 @@
 // we differ from what is printed, as it draws leaves twice, never goes down visible nodes, or asks too much:
 // - visible nodes are opened whether or not they are leaves (4.1, line 20 stands outside of the test);
 // - whether a node was visible counts for the frame before only, and each visit starts with "no"
-// (VisitStates);
+//   (VisitStates);
 // - leaves assumed to be visible are pulled up like those that were asked about;
 // - a re-tested leaf that is visible is not opened again, as it is drawn;
 // - re-tests are submitted after the loop that records them (4.2, lines 9-10);

@@ -19,8 +19,9 @@ struct FrameCounts {
   uint64_t retest_queries = 0;  ///< of leaves that were drawn before (v-queue)
   uint64_t query_boxes = 0;     ///< boxes drawn for queries
   uint64_t node_visits = 0;     ///< nodes taken from the queue, or met going down
-  uint64_t waits = 0;           ///< answers that were asked for before they had arrived
-  bool outside = false;         ///< pvs: the camera was in no cell
+  uint64_t waits = 0;    ///< times that the method stopped for an answer; by the fixed schedule once a submit
+                         /// < whose answers were asked for, so that it does not depend on a clock
+  bool outside = false;  ///< pvs: the camera was in no cell
 
   bool operator==(const FrameCounts&) const = default;
 };

@@ -28,7 +28,7 @@ std::unique_ptr<CullMethod> cullChc(const DrawScene& scene, const Schedule& sche
 struct ChcOptions {
   uint32_t batch_size = 50;     ///< hidden nodes wait until more than so many are there to be asked about
   uint32_t assumed_frames = 5;  ///< a visible leaf is not asked about for so many frames; where it becomes
-                                ///< visible, for 0 to so many (jitter)
+                                /// < visible, for 0 to so many (jitter)
   bool multi_queries = true;    ///< nodes that are likely still hidden share a query
   bool tight_bounds = true;     ///< BoxTree::tightOf in place of a node's own box
   bool c_queue = true;   ///< nodes of failed multiqueries wait for the next batch, not asked about at once

@@ -41,7 +41,7 @@ inline constexpr uint32_t kDefaultSplit = 2048;
 struct PartitionOptions {
   uint32_t split =
       kDefaultSplit;  ///< objects with more triangles are cut into parts of at most so many, which lie
-                      ///< together (subtrees of a tree over the object's triangles); 0: never cut
+                      /// < together (subtrees of a tree over the object's triangles); 0: never cut
   int threads = 0;    ///< 0: all cores; the result does not depend on it
 };
 

@@ -41,7 +41,7 @@ void SoftwareBackend::submitList(uint32_t list) {
 
 bool SoftwareBackend::arrived(QueryId query) {
   if (query < arrived_) return true;
-  uint32_t& polls = answers_[query - first_].polls;
+  uint32_t& polls = answers_.at(query - first_).polls;
   if (polls > 0) {
     --polls;
     return false;
@@ -51,8 +51,9 @@ bool SoftwareBackend::arrived(QueryId query) {
 }
 
 bool SoftwareBackend::visible(QueryId query) {
+  const bool answer = answers_.at(query - first_).visible;
   arrived_ = std::max(arrived_, query + 1);
-  return answers_[query - first_].visible;
+  return answer;
 }
 
 void SoftwareBackend::endFrame() {}

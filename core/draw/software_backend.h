@@ -13,9 +13,9 @@ namespace sightline {
 struct SoftwareAnswers {
   uint32_t polls =
       0;  ///< an answer arrives when it has been asked for so many times (QueryBackend::arrived), or
-          ///< has been waited for; those before it in its submit and in earlier ones then have, too
+          /// < has been waited for; those before it in its submit and in earlier ones then have, too
   bool of_all = false;  ///< against the depth of all opaque drawables, not of what has been drawn so far:
-                        ///< answers that depend on no order
+                        /// < answers that depend on no order
 };
 
 /// A QueryBackend that draws with the processor (SoftwareImage): bit for bit the same everywhere. Scene,
@@ -28,6 +28,7 @@ class SoftwareBackend : public QueryBackend {
   void beginFrame(const Camera& camera) override;
   QueryId submit(std::span<const uint32_t> draws, std::span<const OcclusionQuery> queries) override;
   void submitList(uint32_t list) override;
+  /// As visible, throws std::out_of_range for a query of an older frame, or of none.
   bool arrived(QueryId query) override;
   bool visible(QueryId query) override;
   void endFrame() override;

@@ -30,12 +30,19 @@ SL_FUNC float dotSize(vec3 a, vec3 b) {
   return (fabs(a.x) * fabs(b.x) + fabs(a.y) * fabs(b.y)) + fabs(a.z) * fabs(b.z);
 }
 
+/// The largest whole number not above x, of places within or next to an image.
+SL_FUNC float wholePixel(float x) {
+  float bounded = min(max(x, -32768.0f), 32768.0f);
+  float whole = slFloat(slInt(bounded));
+  return whole > bounded ? whole - 1.0f : whole;
+}
+
 /// Lowest and highest pixel centre within low .. high of the viewport's -1 .. 1, as numbers of pixels; none
 /// where the first is above the second.
 SL_FUNC vec2 pixelRange(float low, float high, float size) {
   float first = (low * 0.5f + 0.5f) * size - (0.5f + kPixelGuard);
   float last = (high * 0.5f + 0.5f) * size - (0.5f - kPixelGuard);
-  return vec2(max(ceil(first), 0.0f), min(floor(last), size - 1.0f));
+  return vec2(max(-wholePixel(-first), 0.0f), min(wholePixel(last), size - 1.0f));
 }
 
 /// The box must be finite. Divisions need not round correctly here: the guards are wider.

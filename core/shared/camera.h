@@ -10,10 +10,9 @@ SL_NAMESPACE_BEGIN
 
 /// A pinhole camera and its image. 80 bytes; core/draw/make_camera.h makes it.
 ///
-///   -1,-1 +----------+        x to the right, y down, as Vulkan's viewports have them; what is nearer than
-///   the near
-///         |    o---> | across plane is cut off, and there are no other planes but the image's four edges
-///         |    v     |
+///   -1,-1 +----------+          x to the right, y down, as Vulkan's viewports have them; what is nearer
+///         |    o---> | across   than the near plane is cut off, and there are no other planes but the
+///         |    v     |          image's four edges
 ///         +----------+ 1,1
 ///            down
 SL_STRUCT(Camera) {

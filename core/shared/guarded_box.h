@@ -30,13 +30,13 @@ SL_FUNC GuardedBox guardBox(Camera camera, vec3 low, vec3 high, float shrink) {
   float pixel = max(2.0f / (maxAbs3(xyz3(camera.across)) * slFloat(camera.size.x)),
                     2.0f / (maxAbs3(xyz3(camera.down)) * slFloat(camera.size.y)));
   float by = reach * 1.9073486e-6f + largest * (pixel * (shrink > 0.0f ? -shrink : 0.015625f)) +
-             largest * (largest / max(least, camera.eye.w)) * 9.5367432e-7f;
+             largest * (largest / max(least, camera.eye.w)) * 1.9073486e-6f;
   GuardedBox result;
   result.low = vec3(low.x - by, low.y - by, low.z - by);
   result.high = vec3(high.x + by, high.y + by, high.z + by);
   float slack =
       by * (fabs(camera.forward.x) + fabs(camera.forward.y) + fabs(camera.forward.z)) + reach * 1.9073486e-6f;
-  result.whole = least - slack > camera.eye.w;
+  result.whole = least - slack > max(camera.eye.w, 0.5f * least);
   return result;
 }
 

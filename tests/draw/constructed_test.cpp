@@ -244,6 +244,119 @@ TEST(ConstructedCounts, CutsInTheNumbersOfFramesForgetWhatWasSeen) {
   }
 }
 
+/// For one frame, what lies within a range of x is visible.
+class SeenForAFrame : public SoftwareBackend {
+ public:
+  using SoftwareBackend::SoftwareBackend;
+  bool now = false;
+  float from = 0, to = 0;
+
+  QueryId submit(std::span<const uint32_t> draws, std::span<const OcclusionQuery> queries) override {
+    const QueryId first = SoftwareBackend::submit(draws, queries);
+    seen_.resize(first + queries.size());
+    for (size_t i = 0; i < queries.size(); ++i) {
+      seen_[first + i] = now && std::ranges::any_of(queries[i].boxes, [&](const AxisBox& box) {
+                           return box.low.x > from && box.high.x < to;
+                         });
+    }
+    return first;
+  }
+  bool visible(QueryId query) override { return SoftwareBackend::visible(query) || seen_[query]; }
+
+ private:
+  std::vector<bool> seen_;
+};
+
+TEST(ConstructedCounts, NodesThatShowedAreNotAskedAboutWithThoseLongHidden) {
+  // Eight walls in a row, and a box close behind each.
+  ObjectScene objects;
+  for (int i = 0; i < 8; ++i) {
+    const glm::vec3 at(float(i) * 20, 0, 0);
+    objects.box(at + glm::vec3(-4, -4, -10.5f), at + glm::vec3(4, 4, -10));
+    objects.box(at + glm::vec3(-1, -1, -12), at + glm::vec3(1, 1, -11));
+  }
+  const Stage stage{std::move(objects)};
+  const Camera camera = cameraAt(stage.parts, {70, 0, 150}, {70, 0, 0}, 400, 100, 40);
+  const auto method = cullChcPlus(stage.parts, {.assumed_frames = 0}, kFixed);
+  SeenForAFrame backend(stage.scene, stage.parts.drawables);
+  backend.from = 55;
+  backend.to = 65;
+  for (uint64_t f = 0; f < 26; ++f) {
+    SCOPED_TRACE(f);
+    backend.now = f == 20;
+    std::vector<uint32_t> drawn;
+    const FrameCounts counts = method->drawFrame(camera, f, backend, drawn);
+    if (f < 10) continue;
+    const uint64_t hidden = counts.queries - counts.retest_queries;
+    if (f < 20) {  // all eight at once
+      EXPECT_EQ(hidden, 1u);
+    }
+    if (f == 20) {  // that fails: each alone
+      EXPECT_EQ(hidden, 1u + 8u);
+      EXPECT_EQ(counts.failed_queries, 1u);
+      EXPECT_EQ(drawn.size(), 9u);
+    }
+    if (f == 21) {  // seven at once; the one that showed is re-tested
+      EXPECT_EQ(hidden, 1u);
+      EXPECT_EQ(counts.retest_queries, 9u);
+    }
+    if (f >= 22) {  // seven at once, and one of which less is known
+      EXPECT_EQ(hidden, 2u);
+    }
+    if (f != 20 && f != 21) {
+      EXPECT_EQ(drawn.size(), 8u);
+    }
+  }
+}
+
+TEST(ConstructedCounts, LateKnowsTheLastFrameOnly) {
+  const Stage stage = wallBeforeBoxes(2);
+  const Camera ahead = cameraAt(stage.parts, {0, 0, 0}, {0, 0, -1}),
+               back = cameraAt(stage.parts, {0, 0, 0}, {0, 0, 1});
+  const auto method = cullLate(stage.parts);
+  SoftwareBackend backend(stage.scene, stage.parts.drawables);
+  std::vector<uint32_t> drawn;
+  const auto objects = [&](const Camera& camera, uint64_t number) {
+    return method->drawFrame(camera, number, backend, drawn).objects;
+  };
+  EXPECT_EQ(objects(ahead, 0), 5u);  // nothing is known
+  EXPECT_EQ(objects(ahead, 1), 1u);  // the wall hides the rest
+  EXPECT_EQ(objects(back, 2), 0u);
+  EXPECT_EQ(objects(ahead, 3), 5u);  // what was known before the last frame is no answer
+  EXPECT_EQ(objects(ahead, 4), 1u);
+  EXPECT_EQ(objects(ahead, 6), 5u);
+}
+
+TEST(SoftwareBackend, AnswersForTwoFrames) {
+  const Stage stage = wallBeforeBoxes(1);
+  SoftwareBackend backend(stage.scene, stage.parts.drawables, nullptr, {.polls = 2});
+  const Camera camera = cameraAt(stage.parts, {0, 0, 0}, {0, 0, -1});
+  const AxisBox behind{{-1, -1, -50}, {1, 1, -49}}, before{{-1, -1, -5}, {1, 1, -4}};
+  const std::vector<OcclusionQuery> queries{{{&behind, 1}}, {{&before, 1}}};
+  const uint32_t wall = 0;
+  backend.beginFrame(camera);
+  const QueryId empty = backend.submit({}, queries), after = backend.submit({&wall, 1}, queries);
+  EXPECT_EQ(empty, 0u);
+  EXPECT_EQ(after, 2u);
+  EXPECT_FALSE(backend.arrived(empty));
+  EXPECT_FALSE(backend.arrived(empty));
+  EXPECT_TRUE(backend.arrived(empty));
+  EXPECT_TRUE(backend.visible(empty));  // before the wall was drawn
+  EXPECT_FALSE(backend.arrived(after));
+  EXPECT_FALSE(backend.visible(after));
+  EXPECT_TRUE(backend.arrived(after));  // waited for
+  backend.endFrame();
+  EXPECT_TRUE(backend.visible(after + 1));
+  backend.beginFrame(camera);
+  EXPECT_EQ(backend.submit({}, queries), 4u);
+  EXPECT_FALSE(backend.visible(after));
+  backend.endFrame();
+  backend.beginFrame(camera);
+  EXPECT_THROW(backend.visible(after), std::out_of_range);
+  EXPECT_TRUE(backend.visible(4));
+  EXPECT_THROW(backend.visible(6), std::out_of_range);
+}
+
 TEST(ConstructedCounts, NoDrawables) {
   const Scene scene = [] {
     ObjectScene objects;

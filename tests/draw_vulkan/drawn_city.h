@@ -37,12 +37,13 @@ inline Camera cameraAt(const DrawScene& scene, const glm::dvec3& eye, const glm:
                     nearDistance(boundsOf(scene.drawables)));
 }
 
-/// A generated city with glass and holes where it has any, drawn in parts of at most 128 triangles.
+/// A generated scene, drawn in parts of at most 128 triangles.
 struct City {
   Scene scene;
   DrawScene parts;
   explicit City(uint64_t triangles = 6000, const char* name = "city")
-      : scene(generateScene(name, triangles, 1)), parts(makeDrawScene(scene, {.split = 128})) {}
+      : City(generateScene(name, triangles, 1)) {}
+  explicit City(Scene its) : scene(std::move(its)), parts(makeDrawScene(scene, {.split = 128})) {}
 
   /// Down a street, a turn, a cut to elsewhere, and up above all.
   std::vector<Camera> path(uint32_t frames, uint32_t width, uint32_t height) const {

@@ -107,7 +107,8 @@ CommandRing::Entry& CommandRing::open(uint32_t queries, uint64_t box_bytes, uint
   checkVk(api.vkBeginCommandBuffer(entry.commands, &info), "vkBeginCommandBuffer");
   if (entry.times.get() != VK_NULL_HANDLE) {
     api.vkResetQueryPool(context_.device(), entry.times.get(), 0, kTimes);
-    api.vkCmdWriteTimestamp(entry.commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, entry.times.get(), 0);
+    // After all that was submitted before: times of submits do not overlap.
+    api.vkCmdWriteTimestamp(entry.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, entry.times.get(), 0);
   }
   return entry;
 }
@@ -210,8 +211,13 @@ GpuTimes CommandRing::gpuTimes(uint64_t frame) {
   for (const FrameTicks& ticks : frames_) {
     if (ticks.frame != frame) continue;
     const double ms = context_.limits().timestamp_ns * 1e-6;
-    times.frame = times.rest = double(ticks.last - ticks.first) * ms;
-    for (size_t i = 0; i < kGpuParts; ++i) times.rest -= times.part[i] = double(ticks.part[i]) * ms;
+    uint64_t rest = ticks.last - ticks.first;
+    times.frame = double(rest) * ms;
+    for (size_t i = 0; i < kGpuParts; ++i) {
+      times.part[i] = double(ticks.part[i]) * ms;
+      rest -= std::min(rest, ticks.part[i]);
+    }
+    times.rest = double(rest) * ms;
   }
   return times;
 }

@@ -1,6 +1,7 @@
 #include "core/draw/vulkan/cull_units.h"
 
 #include <meshoptimizer.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <unordered_map>
@@ -37,6 +38,7 @@ LocalMesh localMesh(const Scene& scene, std::span<const uint32_t> triangles) {
   return mesh;
 }
 
+/// Adds a drawable's meshlets; their slots and words are counted from the units' first.
 void addMeshlets(const Scene& scene, const Drawables& drawables, uint32_t drawable, CullUnits& to) {
   const LocalMesh mesh = localMesh(scene, drawables.trianglesOf(drawable));
   const size_t bound = meshopt_buildMeshletsBound(mesh.indices.size(), kMeshletVertices, kMeshletTriangles);
@@ -67,6 +69,17 @@ void addMeshlets(const Scene& scene, const Drawables& drawables, uint32_t drawab
   }
 }
 
+void append(const CullUnits& from, CullUnits& to) {
+  const auto first_slot = uint32_t(to.indices.size() / 3), first_word = uint32_t(to.words.size());
+  for (CullUnit unit : from.units) {
+    unit.run.x += first_slot;
+    unit.run.w += first_word;
+    to.units.push_back(unit);
+  }
+  to.indices.insert(to.indices.end(), from.indices.begin(), from.indices.end());
+  to.words.insert(to.words.end(), from.words.begin(), from.words.end());
+}
+
 template <typename AddOpaque>
 CullUnits unitsOf(const Drawables& drawables, AddOpaque&& add_opaque) {
   CullUnits result;
@@ -95,7 +108,14 @@ CullUnits drawableUnits(const Drawables& drawables) {
 }
 
 CullUnits meshletUnits(const Scene& scene, const Drawables& drawables) {
-  return unitsOf(drawables, [&](uint32_t i, CullUnits& to) { addMeshlets(scene, drawables, i, to); });
+  std::vector<CullUnits> made(drawables.list.size());
+  tbb::parallel_for(size_t(0), made.size(), [&](size_t i) {
+    if (drawables.list[i].alpha == AlphaKind::opaque) addMeshlets(scene, drawables, uint32_t(i), made[i]);
+  });
+  return unitsOf(drawables, [&](uint32_t i, CullUnits& to) {
+    append(made[i], to);
+    made[i] = {};
+  });
 }
 
 }  // namespace sightline

@@ -60,7 +60,9 @@ DrawMesh::DrawMesh(const VulkanContext& context, const Scene& scene, const Drawa
     for (uint64_t i = 0; i < bytes / 12; ++i) out[i] = scene.vertexNumbers(slots[first / 12 + i]);
   });
   std::vector<uint32_t> surfaces;
-  if (!scene.surfaces.empty() && featuresOf(scene.surfaces).masks) {
+  const SurfaceFeatures features = featuresOf(scene.surfaces);
+  has_sides_ = features.sides;
+  if (features.masks || features.sides) {
     surfaces = packSurfaces(scene.surfaces, slots);
     surfaces_ = context.buffer(surfaces.size() * 4, "surfaces of the scene");
     upload.write(surfaces_, surfaces.data(), surfaces.size() * 4);

@@ -23,6 +23,9 @@ class DrawMesh {
   const Scene& scene() const { return scene_; }
   const Drawables& drawables() const { return drawables_; }
   bool hasGlass() const { return has_glass_; }
+  /// Whether opaque drawables too are drawn vertex by vertex, for the sake of triangles that only their front
+  /// shows.
+  bool hasSides() const { return has_sides_; }
   SlotRun run(uint32_t drawable) const;
   /// Of a list: at most one run of each kind, in the order of kinds.
   const std::vector<SlotRun>& listRuns(uint32_t list) const { return lists_.at(list); }
@@ -33,7 +36,7 @@ class DrawMesh {
  private:
   const Scene& scene_;
   const Drawables& drawables_;
-  bool has_glass_ = false;
+  bool has_glass_ = false, has_sides_ = false;
   std::vector<std::vector<SlotRun>> lists_;
   VulkanBuffer positions_, indices_, surfaces_;
 };

@@ -6,13 +6,14 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/draw/vulkan/depth_pyramid.h"
 #include "core/shared/pyramid.h"
 
 namespace sightline {
 namespace {
 
-// Lists: opaque units in both passes, masked and blended ones; and all opaque units.
-constexpr uint32_t kEarly = 0, kLate = 1, kMasked = 2, kBlended = 3, kAll = 4, kLists = 5;
+// Lists: opaque units in both passes, masked and blended ones; and all opaque units, and all blended ones.
+constexpr uint32_t kEarly = 0, kLate = 1, kMasked = 2, kBlended = 3, kAll = 4, kAllBlended = 5, kLists = 6;
 constexpr uint64_t kHeadBytes = uint64_t(kLists) * kHeadWords * 4;
 constexpr uint32_t kUnitBoxVertices = 14;  // of vk_shaders/box.vert
 constexpr uint64_t kUpdateBytes = 65536;   // of vkCmdUpdateBuffer
@@ -45,6 +46,9 @@ GpuCulling::GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullin
                             why));
   };
   if (const std::string why = whyNotMethod(context.abilities(), method); !why.empty()) refuse(why);
+  if (method == GpuMethod::hizMeshlets && drawing.mesh().hasSides()) {
+    refuse("the scene has triangles that only their front shows, which meshlets do not know; take hiz");
+  }
   const Drawables& drawables = drawing.mesh().drawables();
   const bool meshlets = method == GpuMethod::hizMeshlets;
   units_ = meshlets ? meshletUnits(drawing.mesh().scene(), drawables) : drawableUnits(drawables);
@@ -54,6 +58,13 @@ GpuCulling::GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullin
                        context.limits().draws));
   }
   createBuffers();
+}
+
+GpuCulling::~GpuCulling() {
+  try {
+    drawing_.ring().drain();  // what runs reads the buffers
+  } catch (const Error&) {    // a lost device runs nothing any more
+  }
 }
 
 void GpuCulling::createBuffers() {
@@ -79,6 +90,7 @@ void GpuCulling::createBuffers() {
   head[1] = std::min(all, kMeshletRow);
   head[2] = (all + kMeshletRow - 1) / kMeshletRow;
   head[3] = 1;
+  heads[kAllBlended * kHeadWords] = range(AlphaKind::blended).count;
   upload.write(heads_, heads.data(), kHeadBytes);
   upload.write(unit_buffer_, units_.units.data(), units_.units.size() * sizeof(CullUnit));
   if (method_ == GpuMethod::hizMeshlets) {
@@ -192,6 +204,11 @@ void GpuCulling::drawOpaque(VkCommandBuffer commands, uint32_t list) {
     api.vkCmdDrawMeshTasksIndirectEXT(commands, heads_.get(), head + 4, 1, 12);
     return;
   }
+  if (drawing_.mesh().hasSides()) {
+    drawing_.programs().bind(commands, DrawKind::masked, drawing_.push());
+    api.vkCmdDrawIndirectCount(commands, draws_.get(), 0, heads_.get(), head, opaque.count, kDrawWords * 4);
+    return;
+  }
   drawing_.programs().bind(commands, DrawKind::opaque, drawing_.push());
   const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.mesh().indices();
   api.vkCmdBindIndexBuffer(commands, indices.get(), 0, VK_INDEX_TYPE_UINT32);
@@ -200,17 +217,11 @@ void GpuCulling::drawOpaque(VkCommandBuffer commands, uint32_t list) {
 }
 
 void GpuCulling::drawAll(VkCommandBuffer commands) {
-  const Range opaque = range(AlphaKind::opaque);
-  if (opaque.count == 0) return;
-  if (meshes_) return drawOpaque(commands, kAll);
-  drawing_.programs().bind(commands, DrawKind::opaque, drawing_.push());
-  const VulkanBuffer& indices = method_ == GpuMethod::hizMeshlets ? indices_ : drawing_.mesh().indices();
-  const VulkanApi& api = drawing_.context().api();
-  api.vkCmdBindIndexBuffer(commands, indices.get(), 0, VK_INDEX_TYPE_UINT32);
-  for (uint32_t i = opaque.first; i < opaque.first + opaque.count; ++i) {
-    const uvec4& run = units_.units[i].run;
-    api.vkCmdDrawIndexed(commands, 3 * run.y, 1, 3 * run.x, 0, run.z);
-  }
+  if (meshes_) drawOpaque(commands, kAll);
+}
+
+uint32_t GpuCulling::opaqueKind() const {
+  return meshes_ ? kDrawMeshlets : drawing_.mesh().hasSides() ? kDrawPlain : kDrawIndexed;
 }
 
 void GpuCulling::buildPyramid(VkCommandBuffer commands) {
@@ -219,12 +230,7 @@ void GpuCulling::buildPyramid(VkCommandBuffer commands) {
   drawing_.target().copy(drawing_.context(), commands, DrawTarget::Image::depth, pyramid_);
   drawing_.barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, kShaderStages,
                    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
-  for (uint32_t level = 0; level + 1 < pyramidLevels(width, height); level += 6) {
-    DrawPush push{pyramid_.address(), 0, {width, height, level, faults_.floor_levels ? 1u : 0u}};
-    drawing_.programs().run(commands, "pyramid.comp", push, (levelSize(width, level) + 63) / 64,
-                            (levelSize(height, level) + 63) / 64);
-    between(commands);
-  }
+  recordPyramid(drawing_, commands, pyramid_.address(), width, height, faults_.floor_levels);
 }
 
 void GpuCulling::testByBoxes(CommandRing::Entry& entry) {
@@ -252,7 +258,7 @@ void GpuCulling::testLate(CommandRing::Entry& entry) {
   test(entry.commands, range(AlphaKind::masked), kMasked, by);
   test(entry.commands, range(AlphaKind::blended), kBlended, by);
   between(entry.commands);
-  writeDraws(entry.commands, range(AlphaKind::opaque), kLate, meshes_ ? kDrawMeshlets : kDrawIndexed);
+  writeDraws(entry.commands, range(AlphaKind::opaque), kLate, opaqueKind());
   writeDraws(entry.commands, range(AlphaKind::masked), kMasked, kDrawPlain);
   writeDraws(entry.commands, range(AlphaKind::blended), kBlended, kDrawOrdered);
   between(entry.commands);
@@ -272,8 +278,10 @@ void GpuCulling::drawLate(CommandRing::Entry& entry) {
   }
   if (blended.count > 0) {
     drawing_.programs().bind(entry.commands, DrawKind::glass, drawing_.push());
-    api.vkCmdDrawIndirect(entry.commands, draws_.get(), uint64_t(blended.first) * kStride, blended.count,
-                          kStride);
+    // Their number is known; but lavapipe (Mesa 25.0.7), told by no buffer, takes it from the last draw's
+    // buffer.
+    api.vkCmdDrawIndirectCount(entry.commands, draws_.get(), uint64_t(blended.first) * kStride, heads_.get(),
+                               uint64_t(kAllBlended) * kHeadWords * 4, blended.count, kStride);
   }
   drawing_.endPass(entry);
   drawing_.ring().mark(entry, GpuPart::draw);
@@ -290,7 +298,7 @@ void GpuCulling::drawFrame(const Camera& camera, std::span<const uint32_t> candi
   const Range opaque = range(AlphaKind::opaque);
   test(entry.commands, opaque, kEarly, kTestBefore);
   between(entry.commands);
-  writeDraws(entry.commands, opaque, kEarly, meshes_ ? kDrawMeshlets : kDrawIndexed);
+  writeDraws(entry.commands, opaque, kEarly, opaqueKind());
   between(entry.commands);
   drawing_.ring().mark(entry, GpuPart::cull);
   drawing_.beginPass(entry);

@@ -33,6 +33,10 @@ class GpuCulling {
   /// The drawing must live as long. Throws Error that names what the device lacks, or what does not fit.
   GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullingOptions& options = {});
 
+  GpuCulling(const GpuCulling&) = delete;
+  GpuCulling& operator=(const GpuCulling&) = delete;
+  ~GpuCulling();
+
   /// Draws a frame. candidates: drawables that may be drawn, in any order; nothing: all may. changed: they
   /// are other than in the last frame (so that a set is copied when its cell is entered, not in each frame).
   void drawFrame(const Camera& camera);
@@ -49,7 +53,7 @@ class GpuCulling {
   std::vector<uint32_t> readSeen();
   const CullUnits& units() const { return units_; }
 
-  /// Records the draws of all opaque units in a pass, by the same pipeline: what the method is compared with.
+  /// With mesh shaders, records the draws of all meshlets in a pass: what the method is compared with.
   void drawAll(VkCommandBuffer commands);
 
  private:
@@ -61,6 +65,7 @@ class GpuCulling {
   }
   VkDeviceAddress address() const { return launch_.address(); }
   void createBuffers();
+  uint32_t opaqueKind() const;  ///< of write_draws.comp
   void prepare(VkCommandBuffer commands, std::span<const uint32_t> candidates, bool restricted, bool changed);
   void orderBlended(VkCommandBuffer commands);
   void test(VkCommandBuffer commands, Range range, uint32_t list, uint32_t test);

@@ -74,18 +74,18 @@ DrawPush VulkanDrawing::push(VkDeviceAddress other, const uvec4& numbers) const 
 
 void VulkanDrawing::draw(VkCommandBuffer commands, const SlotRun& run, uint32_t drawable,
                          std::optional<AlphaKind>& bound) {
+  const bool indexed = run.kind == AlphaKind::opaque && !mesh_.hasSides();
   if (bound != run.kind) {
     bound = run.kind;
     programs_.bind(commands,
-                   run.kind == AlphaKind::opaque   ? DrawKind::opaque
-                   : run.kind == AlphaKind::masked ? DrawKind::masked
-                                                   : DrawKind::glass,
+                   indexed                          ? DrawKind::opaque
+                   : run.kind == AlphaKind::blended ? DrawKind::glass
+                                                    : DrawKind::masked,
                    push());
-    if (run.kind == AlphaKind::opaque) {
+    if (indexed)
       context_.api().vkCmdBindIndexBuffer(commands, mesh_.indices().get(), 0, VK_INDEX_TYPE_UINT32);
-    }
   }
-  if (run.kind == AlphaKind::opaque) {
+  if (indexed) {
     context_.api().vkCmdDrawIndexed(commands, 3 * run.count, 1, 3 * run.first, 0, drawable);
   } else {
     context_.api().vkCmdDraw(commands, 3 * run.count, 1, 3 * run.first, drawable);
