@@ -10,7 +10,7 @@
 #include "core/scene/scene.h"
 #include "core/shared/types.h"
 #include "core/trace/device_info.h"
-#include "core/trace/tracer.h"
+#include "core/trace/seen_glass.h"
 
 namespace sightline {
 

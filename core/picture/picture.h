@@ -7,7 +7,7 @@
 #include "core/picture/png.h"
 #include "core/pvs/cell_pvs.h"
 #include "core/scene/scene.h"
-#include "core/trace/tracer.h"
+#include "core/trace/seen_glass.h"
 
 namespace sightline {
 

@@ -5,7 +5,7 @@
 #include "core/picture/png.h"
 #include "core/scene/scene.h"
 #include "core/shared/view_ray.h"
-#include "core/trace/tracer.h"
+#include "core/trace/seen_glass.h"
 
 namespace sightline {
 
