@@ -241,6 +241,10 @@ TEST(GpuCulling, DrawsCandidatesOnly) {
       backend.endFrame();
       EXPECT_EQ(depth, drawing.readDepth()) << its.name << ", frame " << frame;
     }
+    culling.drawFrame(city.path(8, 97, 61).front(), {}, true);
+    EXPECT_EQ(culling.counts().draws, 0u);
+    EXPECT_EQ(drawing.readIds(), std::vector<uint32_t>(97 * 61, kNoDrawable))
+        << "no candidates, nothing drawn";
     culling.drawFrame(city.path(8, 97, 61).front());
     EXPECT_EQ(DepthCheck(drawing).compare(&culling).false_pixels, 0u) << "all may be drawn again";
   }
