@@ -30,8 +30,8 @@ std::vector<ChartPoint> drawable(const std::vector<ChartPoint>& points) {
 }
 
 std::string headHtml(const ReportChart& chart, const char* kind) {
-  std::string html = fmt::format("<figure class=\"{}\"{}{}", kind, chart.log_x ? " data-log-x" : "",
-                                 chart.log_y ? " data-log-y" : "");
+  std::string html = fmt::format("<figure class=\"{}\"{}{}{}", kind, chart.log_x ? " data-log-x" : "",
+                                 chart.log_y ? " data-log-y" : "", chart.stacked ? " data-stacked" : "");
   if (!chart.pick.empty()) html += fmt::format(" data-pick=\"{}\"", escapeHtml(chart.pick));
   html += fmt::format(">\n<figcaption><b>{}</b>", escapeHtml(chart.title));
   if (!chart.note.empty()) html += fmt::format("<span class=\"note\">{}</span>", escapeHtml(chart.note));
@@ -90,6 +90,44 @@ std::string chartHtml(const ReportChart& chart) {
              "<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr><th>{}</th><th>{}</th></tr></thead>\n"
              "{}</table></div></details>\n</figure>\n",
              summaryLine(shown, all), escapeHtml(chart.x), escapeHtml(chart.y), bodies);
+}
+
+std::string spansHtml(const ReportSpans& chart) {
+  std::vector<std::string> names;  // by colour
+  double end = 0;
+  for (const auto& [row, spans] : chart.rows) {
+    for (const ReportSpan& span : spans) {
+      end = std::max(end, span.end);
+      if (std::find(names.begin(), names.end(), span.name) == names.end()) names.push_back(span.name);
+    }
+  }
+  if (!(end > 0)) end = 1;
+  const auto colorOf = [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) - names.begin();
+  };
+  std::string html = fmt::format("<figure class=\"spans\">\n<figcaption><b>{}</b>", escapeHtml(chart.title));
+  if (!chart.note.empty()) html += fmt::format("<span class=\"note\">{}</span>", escapeHtml(chart.note));
+  html += "</figcaption>\n<div class=\"rows\">\n";
+  for (const auto& [row, spans] : chart.rows) {
+    html += fmt::format("<div class=\"row\"><span>{}</span><div class=\"bar\">", escapeHtml(row));
+    for (const ReportSpan& span : spans) {
+      html += fmt::format(
+          "<i class=\"s{}\" style=\"left:{:.4f}%;width:{:.4f}%\" title=\"{}: {:.4g} {}, from {:.4g}\"></i>",
+          colorOf(span.name) % 10, 100 * span.begin / end, 100 * (span.end - span.begin) / end,
+          escapeHtml(span.name), span.end - span.begin, escapeHtml(chart.unit), span.begin);
+    }
+    html += "</div></div>\n";
+  }
+  html += "<div class=\"row axis\"><span></span><div class=\"ticks\">";
+  for (int tick = 0; tick <= 4; ++tick) {
+    html +=
+        fmt::format("<span>{:.3g}{}</span>", end * tick / 4, tick == 4 ? " " + escapeHtml(chart.unit) : "");
+  }
+  html += "</div></div>\n</div>\n<div class=\"names\">";
+  for (size_t i = 0; i < names.size(); ++i) {
+    html += fmt::format("<span><i class=\"s{}\"></i>{}</span>", i % 10, escapeHtml(names[i]));
+  }
+  return html + "</div>\n</figure>\n";
 }
 
 }  // namespace sightline

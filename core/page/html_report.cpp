@@ -79,6 +79,10 @@ void HtmlReport::charts(std::span<const ReportChart> charts) {
   body_ += "</div>\n";
 }
 
+void HtmlReport::spans(const ReportSpans& chart) {
+  body_ += spansHtml(chart);
+}
+
 void HtmlReport::pictures(std::span<const ReportPicture> pictures) {
   body_ += fmt::format("<div class=\"pictures{}\">\n", pictures.size() > kLargePictures ? " many" : "");
   for (const ReportPicture& picture : pictures) {

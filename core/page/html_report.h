@@ -61,9 +61,26 @@ struct ReportChart {
   std::string note = {};       ///< below the title; empty: none
   std::string x = {}, y = {};  ///< what the axes say, with the unit: "seconds"
   bool log_x = false, log_y = false;
+  bool stacked = false;  ///< series are parts of a whole, drawn as areas on top of each other, at the same x;
+                         ///< the y axis begins at 0
   std::string pick = {};  ///< what the series on demand are: "single cells". Charts beside each other share
                           ///< one list to pick from, by the names of the series
   std::vector<ChartSeries> series = {};
+};
+
+/// A part of a span chart's row.
+struct ReportSpan {
+  std::string name = {};
+  double begin = 0, end = 0;
+};
+
+/// What happened when: rows of bars over one axis that begins at 0. Parts of the same name have one colour in
+/// all rows.
+struct ReportSpans {
+  std::string title = {};
+  std::string note = {};
+  std::string unit = {};                                                   ///< of the axis: "ms"
+  std::vector<std::pair<std::string, std::vector<ReportSpan>>> rows = {};  ///< name and spans, in their order
 };
 
 struct ReportPicture {
@@ -107,6 +124,7 @@ class HtmlReport {
   /// Charts beside each other where there is room. Series are thinned to kMaxChartPoints, or
   /// kMaxOnDemandPoints.
   void charts(std::span<const ReportChart> charts);
+  void spans(const ReportSpans& chart);
   /// Beside each other where there is room; more than kLargePictures are small until the reader enlarges one.
   void pictures(std::span<const ReportPicture> pictures);
   /// A section that says how to make the page again.

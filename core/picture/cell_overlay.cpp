@@ -49,7 +49,7 @@ std::pair<uint32_t, uint32_t> pixelRange(double a, double b, double reach, uint3
   return {uint32_t(low), uint32_t(high)};
 }
 
-void drawFace(Image& image, std::span<const float> depths, const Camera& camera, const Face& face) {
+void drawFace(Image& image, std::span<const float> depths, const PictureCamera& camera, const Face& face) {
   const glm::dvec3 normal = glm::vec3(face.normal), corner = glm::vec3(face.corner);
   const glm::dvec3 u = glm::vec3(face.edge_u), v = glm::vec3(face.edge_v);
   for (uint32_t y = 0; y < image.height; ++y) {
@@ -71,7 +71,7 @@ void drawFace(Image& image, std::span<const float> depths, const Camera& camera,
 /// Marks how strongly each pixel is covered by the segment; several segments share `cover`, so that their
 /// joints are not drawn twice.
 void coverSegment(std::vector<float>& cover, const Image& image, std::span<const float> depths,
-                  const Camera& camera, const Segment& segment, double half_width) {
+                  const PictureCamera& camera, const Segment& segment, double half_width) {
   const glm::dvec3 a = camera.project(segment.from), b = camera.project(segment.to);
   if (!(a.z > 0) || !(b.z > 0)) return;
   const glm::dvec2 size(image.width, image.height), from = glm::dvec2(a) * size,
@@ -94,7 +94,7 @@ void coverSegment(std::vector<float>& cover, const Image& image, std::span<const
 }
 
 /// A ring where the whole outline covers less than a small share of the picture.
-void ringSmallCell(Image& image, const Camera& camera, const std::vector<Segment>& segments,
+void ringSmallCell(Image& image, const PictureCamera& camera, const std::vector<Segment>& segments,
                    double line_width) {
   glm::dvec2 low(1e30), high(-1e30);
   for (const Segment& segment : segments) {
@@ -126,7 +126,7 @@ void drawRing(Image& image, double x, double y, double radius, double line_width
   }
 }
 
-void drawCell(Image& image, std::span<const float> depths, const Camera& camera, const ViewCell& cell) {
+void drawCell(Image& image, std::span<const float> depths, const PictureCamera& camera, const ViewCell& cell) {
   const std::vector<Face> faces = cellFaces(cell);
   const std::vector<Segment> segments = outline(cell, faces);
   const double line_width = std::max(1.2, kLineShare * image.height);

@@ -76,8 +76,8 @@ std::optional<float> ceilingCut(const TraceRays& trace, const Box& cell) {
   return float(cell.high.y) + kBelowCeiling * ceilings[ceilings.size() / 4];
 }
 
-Camera lookAt(const Box& box, double azimuth, double elevation, double aspect) {
-  Camera camera;
+PictureCamera lookAt(const Box& box, double azimuth, double elevation, double aspect) {
+  PictureCamera camera;
   camera.tan_y = kTanHalfHeight;
   camera.tan_x = kTanHalfHeight * aspect;
   camera.forward = -glm::dvec3(std::cos(elevation) * std::sin(azimuth), std::sin(elevation),
@@ -99,7 +99,7 @@ Camera lookAt(const Box& box, double azimuth, double elevation, double aspect) {
 }
 
 /// Green samples of a coarse picture; a camera that sees the cell's centre counts half as much again.
-double scoreCamera(const TraceRays& trace, const Camera& camera, const std::optional<float>& cut_height,
+double scoreCamera(const TraceRays& trace, const PictureCamera& camera, const std::optional<float>& cut_height,
                    const glm::dvec3& cell_center, std::span<const uint8_t> member) {
   std::vector<Ray> rays;
   for (uint32_t i = 0; i < kTrialWidth * kTrialHeight; ++i) {
@@ -121,11 +121,11 @@ double scoreCamera(const TraceRays& trace, const Camera& camera, const std::opti
 
 }  // namespace
 
-glm::dvec3 Camera::direction(double x, double y) const {
+glm::dvec3 PictureCamera::direction(double x, double y) const {
   return forward + right * ((2 * x - 1) * tan_x) + up * ((1 - 2 * y) * tan_y);
 }
 
-glm::dvec3 Camera::project(const glm::dvec3& point) const {
+glm::dvec3 PictureCamera::project(const glm::dvec3& point) const {
   const glm::dvec3 offset = point - position;
   const double depth = glm::dot(offset, forward);
   return {0.5 + 0.5 * glm::dot(offset, right) / (depth * tan_x),
@@ -155,7 +155,7 @@ OutsideView placeOutsideView(const TraceRays& trace, const Scene& scene, const C
   for (const double elevation : elevations) {
     for (int side = 0; side < 8; ++side) {
       const double azimuth = (side + 0.6) * std::numbers::pi / 4;  // not along the axes of a city
-      const Camera camera = lookAt(box, azimuth, elevation * std::numbers::pi / 180, aspect);
+      const PictureCamera camera = lookAt(box, azimuth, elevation * std::numbers::pi / 180, aspect);
       const double score = scoreCamera(trace, camera, view.cut_height, pvs.cell.center, member);
       if (score > best * 1.15) {  // the first of similar ones: the lower elevation
         best = score;

@@ -9,7 +9,7 @@
 namespace sightline {
 
 /// A perspective camera. right, up and forward are unit vectors.
-struct Camera {
+struct PictureCamera {
   glm::dvec3 position{0};
   glm::dvec3 right{1, 0, 0}, up{0, 1, 0}, forward{0, 0, -1};
   double tan_x = 1, tan_y = 1;  ///< half of the picture's width and height at distance 1
@@ -23,7 +23,7 @@ struct Camera {
 
 /// What the view from outside shows, and from where.
 struct OutsideView {
-  Camera camera;
+  PictureCamera camera;
   std::optional<float> cut_height;  ///< nothing above it is drawn
 };
 

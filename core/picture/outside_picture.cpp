@@ -14,7 +14,7 @@ namespace {
 constexpr float kShadowOffset = 0x1p-17f;
 
 /// Over the viewer's left shoulder, 50 degrees high: what faces the viewer is lit, and shadows fall aside.
-glm::vec3 sunFor(const Camera& camera) {
+glm::vec3 sunFor(const PictureCamera& camera) {
   const glm::dvec3 back = glm::normalize(glm::dvec3(-camera.forward.x, 0, -camera.forward.z));
   return glm::vec3(glm::normalize(0.45 * back - 0.75 * camera.right + glm::dvec3(0, 1.05, 0)));
 }
@@ -30,7 +30,7 @@ Picture renderOutside(const TraceRays& trace, const Scene& scene, const CellPvs&
   checkSize(options.width, options.height);
   const std::vector<uint8_t> member = membership(scene, pvs.triangles);
   const OutsideView view = placeOutsideView(trace, scene, pvs, member, options);
-  const Camera& camera = view.camera;
+  const PictureCamera& camera = view.camera;
   const Bounds bounds = sceneBounds(scene);
   const float shadow_offset = kShadowOffset * glm::length(bounds.high - bounds.low);
   const glm::vec3 to_sun = sunFor(camera);

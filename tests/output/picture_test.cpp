@@ -204,7 +204,7 @@ struct OpenPlace {
   }
 };
 
-glm::dvec2 placeOf(const Camera& camera, glm::dvec3 point) {
+glm::dvec2 placeOf(const PictureCamera& camera, glm::dvec3 point) {
   return glm::dvec2(camera.project(point));
 }
 
@@ -213,7 +213,7 @@ TEST(OutsidePicture, ShowsTheSetGreenTheRestGreyAndTheCell) {
   const BruteForce trace(place.scene);
   const PictureOptions options = sized(160, 120);
   const Picture picture = renderOutside(trace, place.scene, place.pvs, options);
-  const Camera camera =
+  const PictureCamera camera =
       placeOutsideView(trace, place.scene, place.pvs, membership(place.scene, place.pvs.triangles), options)
           .camera;
   for (const glm::dvec3& point : {glm::dvec3(0, 0.5, 0), {-3, 0.5, 3}, {-3, 0.5, -3}}) {
@@ -233,7 +233,7 @@ TEST(OutsidePicture, KeepsTheWholeCellAndSetInThePicture) {
   const BruteForce trace(place.scene);
   const std::vector<uint8_t> member = membership(place.scene, place.pvs.triangles);
   for (const auto& [width, height] : {std::pair{64u, 48u}, {48u, 64u}, {200u, 20u}}) {
-    const Camera camera =
+    const PictureCamera camera =
         placeOutsideView(trace, place.scene, place.pvs, member, sized(width, height)).camera;
     for (const glm::dvec3& point : {glm::dvec3(10, 4, 2), {8, 2, -2}, {-5, 0.5, 5}, {5, 0.5, -5}}) {
       const glm::dvec3 seen = camera.project(point);

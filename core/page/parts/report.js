@@ -4,6 +4,7 @@
   const kMarkers = ['circle', 'triangle', 'rect', 'rectRot', 'cross', 'star', 'crossRot', 'rectRounded'];
   const kColors = 10;
   const kTint = '2e';  // opacity of a band
+  const kAreaTint = 'b0';  // of a part of a whole
   const kMarkersALine = 8;  // about: more would hide the line
 
   const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
@@ -45,12 +46,13 @@
   }
 
   // values: along the axis. Whole numbers get no ticks between them. fixed: the axis stays where lines come and go.
-  function axis(title, logarithmic, values, fixed) {
+  function axis(title, logarithmic, values, fixed, stacked) {
     const ticks = {maxRotation: 0, autoSkipPadding: 12, callback: short};
     if (!logarithmic && values.every((value) => !(value % 1))) ticks.precision = 0;
     return {
       type: logarithmic ? 'logarithmic' : 'linear',
       title: {display: true, text: title},
+      ...(stacked ? {stacked: true, beginAtZero: true} : {}),
       ticks, ...(logarithmic ? {afterBuildTicks: keepRoundTicks} : {}),
       ...(logarithmic && fixed ? roundEnds(values) : {}),
     };
@@ -85,6 +87,11 @@
     return marked;
   }
 
+  // Parts on top of each other: each down to the one below.
+  function stack(all) {
+    all.forEach((series) => { series.area = true; });
+  }
+
   // Both lines of a band. A band that goes down to 0 on a logarithmic axis goes to the axis's end.
   function closeBands(all, logY) {
     const values = all.flatMap((series) => series.points.map((point) => point.y)).filter((y) => y > 0);
@@ -99,10 +106,10 @@
   }
 
   function dataset(series, logX) {
-    const marked = series.edge ? new Set() : markedPoints(series.points, logX);
+    const marked = series.edge || series.area ? new Set() : markedPoints(series.points, logX);
     return {
-      label: series.name, data: series.points, showLine: series.line, borderWidth: series.edge ? 1 : 2,
-      borderDash: series.dashed ? [6, 4] : [], fill: series.fills ? '-1' : false, order: series.edge ? 1 : 0,
+      label: series.name, data: series.points, showLine: series.line, borderWidth: series.edge || series.area ? 1 : 2,
+      borderDash: series.dashed ? [6, 4] : [], fill: series.area ? 'stack' : series.fills ? '-1' : false, order: series.edge ? 1 : 0,
       hidden: series.onDemand, clip: 8,
       pointRadius: (context) => (!series.line ? 5.5 : marked.has(context.dataIndex) ? 3.5 : 0),
       pointBorderWidth: 1.5, pointHitRadius: 8, pointHoverRadius: 6,
@@ -113,7 +120,7 @@
     const ink = style('--ink'), line = style('--line');
     chart.data.datasets.forEach((set, i) => {
       set.borderColor = set.pointBackgroundColor = colorOf(all[i].color);
-      set.backgroundColor = set.borderColor + kTint;
+      set.backgroundColor = set.borderColor + (all[i].area ? kAreaTint : kTint);
       set.pointBorderColor = all[i].line ? set.borderColor : ink;
       set.pointStyle = kMarkers[all[i].color % kMarkers.length];
     });
@@ -132,8 +139,8 @@
     context.strokeStyle = context.fillStyle = colorOf(series.color);
     context.lineWidth = 2;
     context.setLineDash(series.dashed ? [6, 4] : []);
-    if (series.fills) {
-      context.fillStyle += kTint;
+    if (series.fills || series.area) {
+      context.fillStyle += series.area ? kAreaTint : kTint;
       context.fillRect(0, 0, 28, 14);
       return;
     }
@@ -190,6 +197,8 @@
     const table = figure.querySelector('table');
     const all = readSeries(table, logX, logY);
     closeBands(all, logY);
+    const stacked = 'stacked' in figure.dataset;
+    if (stacked) stack(all);
     const onDemand = 'pick' in figure.dataset;
     const [x, y] = Array.from(table.tHead.rows[0].cells, (cell) => cell.textContent);
     const along = (key) => all.flatMap((series) => series.points.map((point) => point[key]));
@@ -202,7 +211,7 @@
         devicePixelRatio: Math.max(2, window.devicePixelRatio || 1),  // sharp on paper
         interaction: {mode: 'nearest', intersect: false},
         plugins: {legend: {display: false}, tooltip: {callbacks: {title: () => '', label}}},
-        scales: {x: axis(x, logX, along('x'), onDemand), y: axis(y, logY, along('y'), onDemand)},
+        scales: {x: axis(x, logX, along('x'), onDemand), y: axis(y, logY, along('y'), onDemand, stacked)},
       },
     });
     const legend = addLegend(figure.querySelector('.legend'), chart, all);

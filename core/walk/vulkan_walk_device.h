@@ -1,0 +1,10 @@
+#pragma once
+#include "core/walk/walk_device.h"
+
+namespace sightline {
+
+/// Draws on a Vulkan device (core/draw/vulkan). selector: as of VulkanDrawing.
+std::unique_ptr<WalkDevice> makeVulkanWalkDevice(const std::string& selector, const WalkScene& scene,
+                                                 WalkClock clock);
+
+}  // namespace sightline
