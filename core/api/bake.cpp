@@ -29,6 +29,7 @@ PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const Bake
         "method",
         kExitUsage);
   }
+  requireDrawable(params.method, session.scene());
   PvsFile inputs;
   inputs.algorithm = kAlgorithmRevision;
   inputs.intersector = intersectorOf(device);

@@ -109,6 +109,7 @@ void writeReproducers(const CrosscheckCommand& command, const Level& level, cons
         fmt::format("{} ray {} of cell {}", rayKindName(ray.kind), ray.number, level.cells[ray.cell].name);
     head.file_name = reproducerName(written++);
     saveText(reproducerText(head, its), command.reproduce / head.file_name);
+    if (!its.scene.surfaces.empty()) saveText(materialsText(), command.reproduce / kMaterialsName);
     not_alone += !its.reproduces;
   }
   status.end();

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -26,6 +27,7 @@
 #include "core/pvs/cell_summary.h"
 #include "core/pvs/missing_bound.h"
 #include "core/pvs/pvs_writer.h"
+#include "core/strip/aimed_rays.h"
 #include "core/strip/lost_rays.h"
 #include "core/strip/strip_scene.h"
 
@@ -38,11 +40,16 @@ struct StripArguments {
   StripOptions strip;
   SceneLoadOptions load;
   uint32_t rays = 0, check_rays = 1'000'000;  ///< of each cell
+  uint32_t aimed = 500;                       ///< of each cell at each triangle
+  bool tight = false;
   std::string device = "opencl";
   DeviceOptions device_options;
   bool spatial_splits = false;
   BakeParams params;
 };
+
+/// Rounds of aimed rays at most.
+constexpr uint32_t kMostRounds = 4;
 
 bool isSets(const std::filesystem::path& from) {
   const std::string extension = lowerExtension(from);
@@ -169,6 +176,45 @@ void addSeen(const StripArguments& arguments, const PvsFile& pvs, Session& sessi
              counted(added, "triangle"));
 }
 
+uint64_t countOf(const std::vector<bool>& marked) {
+  return uint64_t(std::count(marked.begin(), marked.end(), true));
+}
+
+/// What stays: what is seen and what borders on it, also by rays that are aimed at what else would go, again
+/// and again until they find nothing.
+std::vector<bool> keptOf(const StripArguments& arguments, const PvsFile& pvs, Session& session,
+                         std::vector<bool> seen) {
+  const auto keep = [&] { return arguments.tight ? seen : withNeighbours(session.scene(), seen); };
+  std::vector<bool> kept = keep();
+  const uint64_t before = countOf(seen);
+  uint64_t last = arguments.aimed > 0 ? 1 : 0;
+  AimedRays aimed{.seed = arguments.params.seed, .each = arguments.aimed};
+  TraceStatus status("aimed rays", pvs.cells.size());
+  for (; last > 0 && aimed.round < kMostRounds && !status.stopped(); ++aimed.round) {
+    last = 0;
+    for (uint32_t i = 0; i < pvs.cells.size() && !status.stopped(); ++i) {
+      aimed.cell_index = i;
+      last += markAimed({session.scene(), session.parts().tracer()}, pvs.cells[i].cell, aimed, kept, seen,
+                        status.of(i));
+    }
+    kept = keep();
+  }
+  status.end();
+  if (aimed.round > 0) {
+    fmt::print(
+        "aimed: {} of {} rays of each cell at each triangle that would go meet {} that the sets lack; the "
+        "last "
+        "{}\n",
+        counted(aimed.round, "round"), arguments.aimed, counted(countOf(seen) - before, "triangle"),
+        last == 0 ? "none that goes" : fmt::format("{} that would go", last));
+  }
+  if (!arguments.tight) {
+    fmt::print("margin: {} stay because they share an edge with one that is seen\n",
+               counted(countOf(kept) - countOf(seen), "triangle"));
+  }
+  return kept;
+}
+
 /// Reads the output back, and traces fresh rays in both scenes.
 void check(const StripArguments& arguments, const PvsFile& pvs, Session& session) {
   if (arguments.check_rays == 0) return;
@@ -215,6 +261,7 @@ void runStrip(const StripArguments& arguments) {
   sayPromise(pvs);
   std::vector<bool> seen = seenOf(pvs);
   addSeen(arguments, pvs, session, seen);
+  seen = keptOf(arguments, pvs, session, std::move(seen));
   StripOptions options = arguments.strip;
   options.ignored_extensions = arguments.load.ignored_extensions;
   options.allow_external = arguments.load.allow_external;
@@ -225,8 +272,9 @@ void runStrip(const StripArguments& arguments) {
 constexpr const char* kStripFooter =
     "The output is the scene file itself, without the triangles that are seen from no\n"
     "cell; its folder must hold what the scene names beside it. --from outside: from\n"
-    "anywhere outside of the scene's bounds. A triangle that no ray met goes: what a\n"
-    "cell is said to miss, and the last line, is the promise; more rays (--rays,\n"
+    "anywhere outside of the scene's bounds. A triangle goes if no ray met it, nor\n"
+    "any that shares an edge with it (--tight: if no ray met it). What a cell is said\n"
+    "to miss, and the last line, is the promise; more rays (--aimed, --rays,\n"
     "--n-rand, a lower --threshold) tighten it.\n\n"
     "Examples:\n"
     "  sightline strip car.glb -o shell.glb\n"
@@ -259,6 +307,16 @@ void addStripCommand(CLI::App& app) {
       ->transform(wholeNumber(0, 1u << 30))
       ->type_name("N")
       ->capture_default_str();
+  command
+      ->add_option("--aimed", a->aimed,
+                   "rays of each cell at each triangle that would go, in rounds until one finds nothing, "
+                   "four at most; what "
+                   "they meet stays; 0: none")
+      ->transform(wholeNumber(0, 1u << 20))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_flag("--tight", a->tight,
+                    "drop triangles that share an edge with one that is seen, if no ray meets them");
   command
       ->add_option(
           "--check-rays", a->check_rays,

@@ -72,11 +72,12 @@ void print(const RayAnswers& answers, const std::vector<std::string>& devices) {
   const vec3 origin = xyz3(answers.ray.origin), direction = xyz3(answers.ray.direction);
   fmt::print("{:<{}}  {} along {}\n", "from", width, hexText(origin), hexText(direction));
   fmt::print("{:<{}}  {} along {}\n", "bits", width, bitsText(origin), bitsText(direction));
-  fmt::print("{:<{}}  {}\n", "exactly", width, exactText(answers.exact));
+  fmt::print("{:<{}}  {}\n", "exactly", width, exactText(answers.exact, answers.exact_glass));
   for (size_t d = 0; d < devices.size(); ++d) {
     const Ruling& ruling = answers.rulings[d];
     fmt::print(
-        "{:<{}}  {}: {}{}\n", devices[d], width, answerText(answers.hits[d]), verdictName(ruling.verdict),
+        "{:<{}}  {}: {}{}\n", devices[d], width, answerText(answers.hits[d], answers.glass[d]),
+        verdictName(ruling.verdict),
         ruling.steps_beside > 0 ? fmt::format(", {:.2g} float steps beside it", ruling.steps_beside) : "");
   }
   if (!answers.legal()) {

@@ -12,6 +12,7 @@
 #include "core/base/interrupted.h"
 #include "core/gvs/bake_cell.h"
 #include "core/shared/ray.h"
+#include "core/trace/sights.h"
 
 namespace sightline {
 namespace {
@@ -108,6 +109,7 @@ class Crosscheck {
         worst_(devices.size()),
         disagreements_(options.keep_disagreements) {
     for (const Tracer* device : devices) report_.devices.push_back(device->info());
+    report_.glass = judge_.hasGlass();
     std::vector<RayKind> kinds = options.kinds;
     for (uint32_t k = 0; options.kinds.empty() && k < kRayKinds; ++k) kinds.push_back(RayKind(k));
     for (const RayKind kind : kinds) {
@@ -125,8 +127,8 @@ class Crosscheck {
     rays_.resize(count);
     maker.make(kind(kind_index), first, rays_);
     const auto start = std::chrono::steady_clock::now();
-    hits_.assign(devices_.size(), std::vector<Hit>(count));
-    for (size_t d = 0; d < devices_.size(); ++d) devices_[d]->traceRays(rays_, hits_[d]);
+    sights_.resize(devices_.size());
+    for (size_t d = 0; d < devices_.size(); ++d) sights_[d].trace(*devices_[d], rays_);
     report_.trace_seconds += secondsSince(start);
 
     judged_.assign(count, {});
@@ -150,6 +152,12 @@ class Crosscheck {
   }
 
  private:
+  const Hit& hit(size_t ray, size_t device) const { return sights_[device].hits()[ray]; }
+
+  bool seesGlassAsFirst(size_t ray, size_t device) const {
+    return std::ranges::equal(sights_[device].glass(ray), sights_[0].glass(ray));
+  }
+
   Opinion& opinion(size_t ray, size_t device) { return opinions_[ray * devices_.size() + device]; }
 
   /// Forms the opinions on ray i.
@@ -157,21 +165,23 @@ class Crosscheck {
     const Ray& ray = rays_[i];
     if (!hasDirection(ray)) return;
     JudgedRay& judged = judged_[i];
-    const Hit& reference = hits_[0][i];
+    const Hit& reference = hit(i, 0);
     judged.judged = options_.check_every > 0 && (first + i) % options_.check_every == 0;
     for (size_t d = 0; d < devices_.size(); ++d) {
-      const Hit& hit = hits_[d][i];
-      if (hit.triangle != reference.triangle) judged.disputed = judged.judged = true;
-      const bool past = hit.triangle == kNoTriangle || !(hit.t <= kSuspiciousDistance);
+      const Hit& its = hit(i, d);
+      if (its.triangle != reference.triangle || !seesGlassAsFirst(i, d))
+        judged.disputed = judged.judged = true;
+      const bool past = its.triangle == kNoTriangle || !(its.t <= kSuspiciousDistance);
       if (isAimed(kind) && past) judged.judged = true;
-      if (hit.triangle != kNoTriangle) opinion(i, d).ulps = ulpsOff(judge_, ray, hit);
+      if (its.triangle != kNoTriangle) opinion(i, d).ulps = ulpsOff(judge_, ray, its);
     }
     if (!judged.judged) return;
     judged.exact = judge_.nearest(judgeRay(ray));
     for (size_t d = 0; d < devices_.size(); ++d) {
-      const Hit& hit = hits_[d][i];
-      opinion(i, d).difference = differenceOf(judge_, ray, reference, hit, options_.rounding);
-      opinion(i, d).ruling = rule(judge_, ray, hit, judged.exact, options_.rounding);
+      Opinion& its = opinion(i, d);
+      its.difference = differenceOf(judge_, ray, reference, hit(i, d), options_.rounding);
+      if (its.difference == Difference::kSame && !seesGlassAsFirst(i, d)) its.difference = Difference::kGlass;
+      its.ruling = ruleSight(judge_, ray, hit(i, d), sights_[d].glassIds(i), judged.exact, options_.rounding);
     }
   }
 
@@ -186,7 +196,8 @@ class Crosscheck {
     for (size_t d = 0; d < devices_.size(); ++d) {
       DeviceTally& tally = kind_report.devices[d];
       const Opinion& its = opinion(i, d);
-      tally.hits += hits_[d][i].triangle != kNoTriangle;
+      tally.hits += hit(i, d).triangle != kNoTriangle;
+      tally.glass += sights_[d].glass(i).size();
       ++tally.differences[size_t(its.difference)];
       if (its.ulps >= 0) tally.ulps.add(its.ulps);
       if (judged.judged) {
@@ -208,10 +219,13 @@ class Crosscheck {
   }
 
   CheckedRay inFull(size_t i, uint32_t cell, RayKind kind, uint64_t first) {
-    CheckedRay ray{cell, kind, first + i, {rays_[i], {}, {}, judged_[i].exact}};
-    if (!judged_[i].judged) ray.answers.exact = judge_.nearest(judgeRay(rays_[i]));
+    CheckedRay ray{cell, kind, first + i, {}};
+    ray.answers.ray = rays_[i];
+    ray.answers.exact = judged_[i].judged ? judged_[i].exact : judge_.nearest(judgeRay(rays_[i]));
+    ray.answers.exact_glass = judge_.glassBefore(judgeRay(rays_[i]), ray.answers.exact);
     for (size_t d = 0; d < devices_.size(); ++d) {
-      ray.answers.hits.push_back(hits_[d][i]);
+      ray.answers.hits.push_back(hit(i, d));
+      ray.answers.glass.push_back(sights_[d].glassIds(i));
       ray.answers.rulings.push_back(opinion(i, d).ruling);
     }
     return ray;
@@ -232,7 +246,7 @@ class Crosscheck {
   std::vector<WorstRays> worst_;  ///< by device
   DisagreementList disagreements_;
   std::vector<Ray> rays_;
-  std::vector<std::vector<Hit>> hits_;  ///< by device
+  std::vector<Sights> sights_;  ///< by device
   std::vector<JudgedRay> judged_;
   std::vector<Opinion> opinions_;  ///< by ray, then device
 };

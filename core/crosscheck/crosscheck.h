@@ -26,6 +26,7 @@ struct CrosscheckOptions {
 /// What one device answered to the rays of one kind.
 struct DeviceTally {
   uint64_t hits = 0;
+  uint64_t glass = 0;                                ///< triangles of glass that rays see, of all rays
   std::array<uint64_t, kDifferences> differences{};  ///< from the first device's answers
   std::array<uint64_t, kVerdicts> disputed{};        ///< verdicts on rays on which devices differ
   std::array<uint64_t, kVerdicts> checked{};         ///< verdicts on other rays that the judge looked at
@@ -38,7 +39,7 @@ struct DeviceTally {
 struct KindReport {
   RayKind kind = RayKind::kRandom;
   uint64_t rays = 0;      ///< that have a direction
-  uint64_t disputed = 0;  ///< two devices differ in the triangle
+  uint64_t disputed = 0;  ///< two devices differ in the triangle, or in the glass before it
   uint64_t checked =
       0;  ///< all agree, yet the judge looked: samples, and aimed rays that went past their target
   std::vector<DeviceTally> devices;
@@ -67,6 +68,7 @@ struct Disagreements {
 
 struct CrosscheckReport {
   std::vector<DeviceInfo> devices;
+  bool glass = false;  ///< the scene has some: answers are what ends a ray, and what it sees before that
   std::vector<KindReport> kinds;
   std::vector<WorstRay> worst;  ///< ten at most a device: wrong, missed, rounded, then large errors of t
   Disagreements disagreements;

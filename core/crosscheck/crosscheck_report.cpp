@@ -19,9 +19,14 @@ Json verdictCounts(const std::array<uint64_t, kVerdicts>& counts) {
   return json;
 }
 
-Json differenceCounts(const std::array<uint64_t, kDifferences>& counts) {
+/// Differences in glass are of scenes with glass alone.
+uint32_t differencesOf(const CrosscheckReport& report) {
+  return report.glass ? kDifferences : uint32_t(Difference::kGlass);
+}
+
+Json differenceCounts(const std::array<uint64_t, kDifferences>& counts, uint32_t kinds) {
   Json json;
-  for (uint32_t i = 0; i < kDifferences; ++i) json[differenceName(Difference(i))] = counts[i];
+  for (uint32_t i = 0; i < kinds; ++i) json[differenceName(Difference(i))] = counts[i];
   return json;
 }
 
@@ -30,7 +35,8 @@ Json toJson(const ErrorHistogram& ulps) {
           {"p99", ulps.percentile(0.99)}, {"p999", ulps.percentile(0.999)}, {"max", ulps.max()}};
 }
 
-Json toJson(const KindReport& kind, const std::vector<DeviceInfo>& devices) {
+Json toJson(const KindReport& kind, const CrosscheckReport& report) {
+  const std::vector<DeviceInfo>& devices = report.devices;
   Json json = {{"kind", rayKindName(kind.kind)},
                {"rays", kind.rays},
                {"disputed", kind.disputed},
@@ -40,11 +46,12 @@ Json toJson(const KindReport& kind, const std::vector<DeviceInfo>& devices) {
     const DeviceTally& tally = kind.devices[d];
     json["devices"].push_back({{"device", devices[d].id},
                                {"hits", tally.hits},
-                               {"differences", differenceCounts(tally.differences)},
+                               {"differences", differenceCounts(tally.differences, differencesOf(report))},
                                {"disputed", verdictCounts(tally.disputed)},
                                {"checked", verdictCounts(tally.checked)},
                                {"rounded_steps_max", tally.steps_beside},
                                {"distance_ulps", toJson(tally.ulps)}});
+    if (report.glass) json["devices"].back()["glass"] = tally.glass;
   }
   return json;
 }
@@ -71,9 +78,9 @@ std::string worstText(const WorstRay& ray, const std::vector<DeviceInfo>& device
       fmt::format("\n{}, {} ray {} of cell {}: {}\n", devices[ray.device].id, rayKindName(ray.checked.kind),
                   ray.checked.number, ray.checked.cell, verdictName(answers.rulings[ray.device].verdict));
   text += fmt::format("  from {} along {}\n  exactly: {}\n", hexText(xyz3(answers.ray.origin)),
-                      hexText(xyz3(answers.ray.direction)), exactText(answers.exact));
+                      hexText(xyz3(answers.ray.direction)), exactText(answers.exact, answers.exact_glass));
   for (size_t i = 0; i < devices.size(); ++i) {
-    text += fmt::format("  {}: {} ({})\n", devices[i].id, answerText(answers.hits[i]),
+    text += fmt::format("  {}: {} ({})\n", devices[i].id, answerText(answers.hits[i], answers.glass[i]),
                         verdictName(answers.rulings[i].verdict));
   }
   return text;
@@ -113,7 +120,7 @@ Json crosscheckJson(const CrosscheckHead& head, const CrosscheckReport& report) 
     devices.push_back(
         {{"id", device.id}, {"name", device.name}, {"driver", device.driver}, {"layout", device.layout}});
   }
-  for (const KindReport& kind : report.kinds) kinds.push_back(toJson(kind, report.devices));
+  for (const KindReport& kind : report.kinds) kinds.push_back(toJson(kind, report));
   for (const WorstRay& ray : report.worst) worst.push_back(toJson(ray, report.devices));
   return {
       {"sightline", head.version},
@@ -138,15 +145,15 @@ std::string crosscheckTable(const CrosscheckReport& report) {
   size_t width = 6;
   for (const DeviceInfo& device : report.devices) width = std::max(width, device.id.size());
   std::string table = fmt::format(
-      "{:<10}  {:>9}  {:<{}}  {:>8} {:>8} {:>8} {:>8}  {:>8} {:>8} {:>8} {:>8} {:>8}  {:>7} {:>8} {:>8}\n",
-      "kind", "rays", "device", width, "tie", "edge", "one miss", "other", "judged", "right", "rounded",
-      "missed", "wrong", "ulps 50", "99 %", "max");
+      "{:<10}  {:>9}  {:<{}}  {:>8} {:>8} {:>8} {:>8}{}  {:>8} {:>8} {:>8} {:>8} {:>8}  {:>7} {:>8} {:>8}\n",
+      "kind", "rays", "device", width, "tie", "edge", "one miss", "other", report.glass ? "    glass" : "",
+      "judged", "right", "rounded", "missed", "wrong", "ulps 50", "99 %", "max");
   for (const KindReport& kind : report.kinds) {
     for (size_t d = 0; d < report.devices.size(); ++d) {
       const DeviceTally& t = kind.devices[d];
       table += fmt::format("{:<10}  {:>9}  {:<{}}  ", d == 0 ? rayKindName(kind.kind) : "",
                            d == 0 ? shortCount(kind.rays) : "", report.devices[d].id, width);
-      for (uint32_t i = 1; i < kDifferences; ++i) table += fmt::format("{:>8} ", t.differences[i]);
+      for (uint32_t i = 1; i < differencesOf(report); ++i) table += fmt::format("{:>8} ", t.differences[i]);
       table += fmt::format(" {:>8} ", kind.disputed + kind.checked);
       for (const Verdict verdict : kAllVerdicts) table += fmt::format("{:>8} ", t.verdicts(verdict));
       table += fmt::format(" {:>7.2g} {:>8.3g} {:>8.3g}\n", t.ulps.percentile(0.5), t.ulps.percentile(0.99),

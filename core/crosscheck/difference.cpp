@@ -42,7 +42,7 @@ bool meetsWhatIsShared(const Judge& judge, const JudgeRay& ray, uint32_t a, uint
 }  // namespace
 
 std::string differenceName(Difference difference) {
-  constexpr const char* kNames[] = {"same", "tie", "edge", "missed", "wrong"};
+  constexpr const char* kNames[] = {"same", "tie", "edge", "missed", "wrong", "glass"};
   return kNames[size_t(difference)];
 }
 

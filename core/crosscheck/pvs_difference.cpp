@@ -9,6 +9,7 @@
 #include "core/crosscheck/ray_answers.h"
 #include "core/io/float_text.h"
 #include "core/pvs/stage_name.h"
+#include "core/trace/sights.h"
 
 namespace sightline {
 namespace {
@@ -26,20 +27,24 @@ void explain(const Judge& judge, const CellPvs& with, const CellPvs& without,
     rays.push_back({vec4(with.witnesses[i].origin, 0), vec4(with.witnesses[i].direction, 0)});
   }
   result.only[found_by] = extra.size();
-  std::array<std::vector<Hit>, 2> hits;
-  for (size_t d = 0; d < 2; ++d) {
-    hits[d].resize(rays.size());
-    devices[d]->traceRays(rays, hits[d]);
-  }
+  std::array<Sights, 2> sights;
+  for (size_t d = 0; d < 2; ++d) sights[d].trace(*devices[d], rays);
   for (size_t i = 0; i < extra.size(); ++i) {
     DisputedTriangle& its = extra[i];
-    its.hits = {hits[0][i], hits[1][i]};
-    if (its.hits[0].triangle == its.triangle && its.hits[1].triangle == its.triangle) {
+    its.hits = {sights[0].hits()[i], sights[1].hits()[i]};
+    const auto sees = [&](const Sights& of) {
+      bool found = false;
+      of.visit(i, [&](uint32_t triangle) { found = found || triangle == its.triangle; });
+      return found;
+    };
+    if (sees(sights[0]) && sees(sights[1])) {
       ++result.other_rays[found_by];
       continue;
     }
     const ExactHit exact = judge.nearest(judgeRay(rays[i]));
-    for (size_t d = 0; d < 2; ++d) its.rulings[d] = rule(judge, rays[i], its.hits[d], exact, limit);
+    for (size_t d = 0; d < 2; ++d) {
+      its.rulings[d] = ruleSight(judge, rays[i], its.hits[d], sights[d].glassIds(i), exact, limit);
+    }
     result.disputed.push_back(its);
   }
 }

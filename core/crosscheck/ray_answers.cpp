@@ -7,15 +7,22 @@
 #include "core/crosscheck/difference.h"
 #include "core/io/float_text.h"
 #include "core/shared/vector.h"
+#include "core/trace/sights.h"
 
 namespace sightline {
 Json hexVector(const vec3& v) {
   return {hexFloat(v.x), hexFloat(v.y), hexFloat(v.z)};
 }
 
+bool RayAnswers::anyGlass() const {
+  return !exact_glass.empty() ||
+         std::any_of(glass.begin(), glass.end(), [](const auto& its) { return !its.empty(); });
+}
+
 bool RayAnswers::differ() const {
   return std::any_of(hits.begin(), hits.end(),
-                     [&](const Hit& hit) { return hit.triangle != hits.front().triangle; });
+                     [&](const Hit& hit) { return hit.triangle != hits.front().triangle; }) ||
+         std::any_of(glass.begin(), glass.end(), [&](const auto& its) { return its != glass.front(); });
 }
 
 bool RayAnswers::legal() const {
@@ -29,11 +36,14 @@ RayAnswers askAll(const Judge& judge, const Ray& ray, std::span<Tracer* const> d
   RayAnswers answers;
   answers.ray = ray;
   answers.exact = judge.nearest(judgeRay(ray));
+  answers.exact_glass = judge.glassBefore(judgeRay(ray), answers.exact);
   for (Tracer* device : devices) {
-    Hit hit{};
-    device->traceRays({&ray, 1}, {&hit, 1});
+    Sights sights;
+    sights.trace(*device, {&ray, 1});
+    const Hit hit = sights.hits().front();
     answers.hits.push_back(hit);
-    answers.rulings.push_back(rule(judge, ray, hit, answers.exact, limit));
+    answers.glass.push_back(sights.glassIds(0));
+    answers.rulings.push_back(ruleSight(judge, ray, hit, answers.glass.back(), answers.exact, limit));
   }
   return answers;
 }
@@ -58,18 +68,30 @@ void addAnswers(Json& json, const RayAnswers& answers, std::span<const std::stri
   json["exact_triangles"] = answers.exact.triangles;
   json["exact_t"] = answers.exact.missed() ? Json(nullptr) : Json(answers.exact.t.low);
   json["answers"] = answersJson(answers.hits, answers.rulings, devices);
+  if (!answers.anyGlass()) return;
+  json["exact_glass"] = answers.exact_glass;
+  for (size_t d = 0; d < devices.size(); ++d) json["answers"][d]["glass"] = answers.glass[d];
 }
 
-std::string answerText(const Hit& hit) {
-  if (hit.triangle == kNoTriangle) return "nothing";
-  return fmt::format("triangle {} at {}", hit.triangle, hexFloat(hit.t));
+namespace {
+
+std::string glassText(std::span<const uint32_t> glass) {
+  return glass.empty() ? "" : fmt::format(", through glass {}", fmt::join(glass, ", "));
 }
 
-std::string exactText(const ExactHit& exact) {
-  if (exact.missed()) return "nothing";
+}  // namespace
+
+std::string answerText(const Hit& hit, std::span<const uint32_t> glass) {
+  if (hit.triangle == kNoTriangle) return "nothing" + glassText(glass);
+  return fmt::format("triangle {} at {}{}", hit.triangle, hexFloat(hit.t), glassText(glass));
+}
+
+std::string exactText(const ExactHit& exact, std::span<const uint32_t> glass) {
+  if (exact.missed()) return "nothing" + glassText(glass);
   return fmt::format(
-      "triangle {}{} at {:.9g}", exact.triangles.front(),
-      exact.triangles.size() > 1 ? fmt::format(" and {} more", exact.triangles.size() - 1) : "", exact.t.low);
+      "triangle {}{} at {:.9g}{}", exact.triangles.front(),
+      exact.triangles.size() > 1 ? fmt::format(" and {} more", exact.triangles.size() - 1) : "", exact.t.low,
+      glassText(glass));
 }
 
 std::string hexText(const vec3& v) {

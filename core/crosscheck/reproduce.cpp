@@ -25,6 +25,11 @@ constexpr const char* kNameStart = "disagreement-";
 /// Ids that an answer names, ascending.
 std::vector<uint32_t> namedTriangles(const Judge& judge, const RayAnswers& answers) {
   std::vector<uint32_t> named = answers.exact.triangles;
+  named.insert(named.end(), answers.exact_glass.begin(), answers.exact_glass.end());
+  for (const auto& glass : answers.glass) {
+    std::ranges::copy_if(glass, std::back_inserter(named),
+                         [&](uint32_t triangle) { return triangle < judge.triangleCount(); });
+  }
   for (const Hit& hit : answers.hits) {
     if (hit.triangle < judge.triangleCount()) named.push_back(hit.triangle);
   }
@@ -85,7 +90,8 @@ class Neighbourhood {
   double reach_ = 0, farthest_ = 0, steps_ = 0;
 };
 
-/// The scene of some of the triangles, with the vertices that they use.
+/// The scene of some of the triangles, with the vertices that they use, and what of them is glass: all that
+/// the file of a reproducer can say of surfaces.
 Scene partOf(const Scene& scene, std::span<const uint32_t> triangles) {
   Scene part;
   std::map<uint32_t, uint32_t> places;  // of vertices
@@ -98,7 +104,9 @@ Scene partOf(const Scene& scene, std::span<const uint32_t> triangles) {
       corners[i] = place->second;
     }
     part.triangles.push_back(corners);
+    part.surfaces.words.push_back(scene.surfaces.of(triangle) & kSurfaceGlass);
   }
+  if (!featuresOf(part.surfaces).glass) part.surfaces.words.clear();
   part.objects = {{"around-the-ray", 0, uint32_t(part.triangles.size())}};
   return part;
 }
@@ -107,6 +115,12 @@ Scene partOf(const Scene& scene, std::span<const uint32_t> triangles) {
 Hit inWhole(Hit hit, std::span<const uint32_t> triangles) {
   if (hit.triangle < triangles.size()) hit.triangle = triangles[hit.triangle];
   return hit;
+}
+
+bool sameGlass(const std::vector<uint32_t>& here, const std::vector<uint32_t>& whole,
+               std::span<const uint32_t> triangles) {
+  return std::ranges::equal(here, whole, {},
+                            [&](uint32_t id) { return id < triangles.size() ? triangles[id] : kNoTriangle; });
 }
 
 bool sameAnswer(const Hit& a, const Hit& b) {
@@ -126,7 +140,7 @@ std::string oneLine(std::string text) {
 std::string answerLines(const ReproducerHead& head, const RayAnswers& answers) {
   std::string text;
   for (size_t d = 0; d < head.devices.size(); ++d) {
-    text += fmt::format("# {}: {} ({})\n", head.devices[d], answerText(answers.hits[d]),
+    text += fmt::format("# {}: {} ({})\n", head.devices[d], answerText(answers.hits[d], answers.glass[d]),
                         verdictName(answers.rulings[d].verdict));
   }
   return text;
@@ -134,6 +148,7 @@ std::string answerLines(const ReproducerHead& head, const RayAnswers& answers) {
 
 bool isReproducer(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
+  if (name == kMaterialsName) return true;
   return name.starts_with(kNameStart) && name.ends_with(".obj");
 }
 
@@ -159,6 +174,7 @@ Reproducer findReproducer(const Scene& scene, const Judge& judge, const RayAnswe
     for (size_t d = 0; d < whole.hits.size(); ++d) {
       const Hit here = inWhole(result.answers.hits[d], triangles);
       result.reproduces = result.reproduces && sameAnswer(here, whole.hits[d]) &&
+                          sameGlass(result.answers.glass[d], whole.glass[d], triangles) &&
                           result.answers.rulings[d].verdict == whole.rulings[d].verdict;
     }
     if (result.reproduces) break;
@@ -175,7 +191,7 @@ std::string reproducerText(const ReproducerHead& head, const Reproducer& reprodu
   std::string text = fmt::format("# {}, scene {}\n", oneLine(head.what), scene_name);
   text += fmt::format("# from {} along {}\n", hexText(origin), hexText(direction));
   text += fmt::format("# bits {} along {}\n", bitsText(origin), bitsText(direction));
-  text += fmt::format("# exactly: {}\n", exactText(answers.exact));
+  text += fmt::format("# exactly: {}\n", exactText(answers.exact, answers.exact_glass));
   text += answerLines(head, answers);
   if (reproducer.reproduces) {
     text += "# On these triangles alone each device answers as on the whole scene.\n";
@@ -183,18 +199,25 @@ std::string reproducerText(const ReproducerHead& head, const Reproducer& reprodu
     text +=
         "# These are the answers on these triangles alone, where it does NOT reproduce. On the whole "
         "scene:\n";
-    text += fmt::format("# exactly: {}\n{}", exactText(reproducer.whole.exact),
+    text += fmt::format("# exactly: {}\n{}", exactText(reproducer.whole.exact, reproducer.whole.exact_glass),
                         answerLines(head, reproducer.whole));
   }
   text += fmt::format("# In this folder: sightline trace {} --from {} --along {} --devices {}{}\n",
                       head.file_name, bitsText(origin), bitsText(direction), devices, head.options);
+  const Surfaces& surfaces = reproducer.scene.surfaces;
+  if (!surfaces.empty()) text += fmt::format("mtllib {}\n", kMaterialsName);
   for (const glm::vec3& p : reproducer.scene.positions) text += fmt::format("v {} {} {}\n", p.x, p.y, p.z);
   for (size_t i = 0; i < reproducer.triangles.size(); ++i) {
     const glm::uvec3 t = reproducer.scene.triangles[i] + 1u;
+    if (!surfaces.empty()) text += surfaces.words[i] == 0 ? "usemtl opaque\n" : "usemtl glass\n";
     text += fmt::format("# triangle {} here is {} of {}\nf {} {} {}\n", i, reproducer.triangles[i],
                         scene_name, t.x, t.y, t.z);
   }
   return text;
+}
+
+std::string materialsText() {
+  return "newmtl opaque\nd 1\nnewmtl glass\nd 0.5\n";
 }
 
 std::string reproducerName(size_t number) {

@@ -11,7 +11,8 @@ namespace sightline {
 
 /// A ray with the few triangles around it, on which devices answer it as on the whole scene.
 struct Reproducer {
-  Scene scene;                      ///< the triangles, in the order of their ids in the whole scene
+  Scene scene;                      ///< the triangles, in the order of their ids in the whole scene; of their
+                                    ///< surfaces only what is glass, no holes and no sides
   std::vector<uint32_t> triangles;  ///< these ids
   RayAnswers answers;               ///< on this scene alone, in its own ids
   RayAnswers whole;                 ///< on the whole scene, in its ids
@@ -40,6 +41,10 @@ struct ReproducerHead {
 /// An OBJ whose comments say all: the ray, the answers, the verdicts, and the command that repeats it. Its
 /// vertices are decimals that read back to the same floats.
 std::string reproducerText(const ReproducerHead& head, const Reproducer& reproducer);
+
+/// What reproducers with glass name as their materials, to be written beside them.
+inline constexpr const char* kMaterialsName = "disagreement-glass.mtl";
+std::string materialsText();
 
 /// "disagreement-0001.obj" for 0, ...
 std::string reproducerName(size_t number);

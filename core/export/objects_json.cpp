@@ -3,10 +3,12 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/bake/cell_json.h"
 #include "core/base/text.h"
 #include "core/sampling/numbered_rays.h"
+#include "core/trace/sights.h"
 
 namespace sightline {
 namespace {
@@ -59,18 +61,25 @@ ObjectHits countObjectHits(Tracer& tracer, const Scene& scene, const ViewCell& c
   const NumberedRays numbered(cellFaces(cell), haltonShifts(seed, cell_index, RandomUse::kCounting), rays);
   ObjectHits result{0, std::vector<uint64_t>(scene.objects.size(), 0)};
   std::vector<Ray> batch(std::min(rays, kHitChunk));
-  std::vector<Hit> hits(batch.size());
+  Sights sights;
+  std::vector<uint64_t> last(scene.objects.size(),
+                             0);  // by object: number of the last ray that saw it, from 1
   for (uint32_t first = 0; first < rays; first += kHitChunk) {
     const uint32_t count = std::min(rays - first, kHitChunk);
     tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });
-    tracer.traceRays(std::span(batch).first(count), std::span(hits).first(count));
+    sights.trace(tracer, std::span(batch).first(count));
     for (uint32_t i = 0; i < count; ++i) {
-      if (hits[i].triangle == kNoTriangle) continue;
-      const auto behind =
-          std::upper_bound(scene.objects.begin(), scene.objects.end(), hits[i].triangle,
-                           [](uint32_t id, const SceneObject& object) { return id < object.first_triangle; });
-      ++result.hits;
-      ++result.of_object[size_t(behind - scene.objects.begin()) - 1];
+      const uint64_t number = uint64_t(first) + i + 1;
+      bool sees = false;
+      sights.visit(i, [&](uint32_t id) {
+        const auto behind = std::upper_bound(
+            scene.objects.begin(), scene.objects.end(), id,
+            [](uint32_t triangle, const SceneObject& object) { return triangle < object.first_triangle; });
+        const auto object = size_t(behind - scene.objects.begin()) - 1;
+        sees = true;
+        if (std::exchange(last[object], number) != number) ++result.of_object[object];
+      });
+      if (sees) ++result.hits;
     }
   }
   return result;

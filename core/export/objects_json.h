@@ -12,10 +12,10 @@ namespace sightline {
 /// Most rays that countObjectHits takes.
 inline constexpr uint32_t kMostObjectRays = 1u << 30;
 
-/// What random rays of a cell meet first.
+/// What random rays of a cell see: what ends them, and the glass before that.
 struct ObjectHits {
   uint64_t hits = 0;                ///< rays that meet anything
-  std::vector<uint64_t> of_object;  ///< by object of the scene
+  std::vector<uint64_t> of_object;  ///< by object of the scene: rays that see anything of it
 };
 
 /// Traces `rays` (1 .. kMostObjectRays) random rays of the cell, uniform over its surface and the directions

@@ -22,27 +22,6 @@ std::span<const uint8_t> asBytes(std::string_view text) {
   return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
 }
 
-/// Decodes %20 and the like; a % before anything else than two digits stands for itself.
-std::string percentDecoded(const std::string& uri) {
-  const auto digit = [&](size_t i) -> int {
-    const char c = i < uri.size() ? uri[i] : '\0';
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
-    return -1;
-  };
-  std::string result;
-  for (size_t i = 0; i < uri.size(); ++i) {
-    if (uri[i] != '%' || digit(i + 1) < 0 || digit(i + 2) < 0) {
-      result += uri[i];
-      continue;
-    }
-    result += char(digit(i + 1) * 16 + digit(i + 2));
-    i += 2;
-  }
-  return result;
-}
-
 std::vector<uint8_t> readDataUri(const std::string& uri, const std::string& place) {
   const size_t comma = uri.find(',');
   const std::string_view head = std::string_view(uri).substr(0, comma == std::string::npos ? 0 : comma);
@@ -92,6 +71,26 @@ std::vector<uint8_t> readBesides(const std::string& uri, const std::filesystem::
 }
 
 }  // namespace
+
+std::string percentDecoded(const std::string& uri) {
+  const auto digit = [&](size_t i) -> int {
+    const char c = i < uri.size() ? uri[i] : '\0';
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
+  };
+  std::string result;
+  for (size_t i = 0; i < uri.size(); ++i) {
+    if (uri[i] != '%' || digit(i + 1) < 0 || digit(i + 2) < 0) {
+      result += uri[i];
+      continue;
+    }
+    result += char(digit(i + 1) * 16 + digit(i + 2));
+    i += 2;
+  }
+  return result;
+}
 
 uint64_t gltfComponentBytes(GltfComponent component) {
   if (component == GltfComponent::kByte || component == GltfComponent::kUnsignedByte) return 1;

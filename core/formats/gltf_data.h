@@ -78,6 +78,9 @@ class GltfReader {
   size_t next_sparse_ = 0;
 };
 
+/// A URI with %20 and the like decoded; a % before anything else than two digits stands for itself.
+std::string percentDecoded(const std::string& uri);
+
 /// Bytes of one component.
 uint64_t gltfComponentBytes(GltfComponent component);
 

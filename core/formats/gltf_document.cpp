@@ -424,4 +424,18 @@ GltfDocument readGltfDocument(const nlohmann::json& root, const std::string& fil
   return result;
 }
 
+uint64_t cornerCountOf(const GltfDocument& document, const GltfPrimitive& primitive) {
+  return document.accessors[primitive.indices ? *primitive.indices : *primitive.positions].count;
+}
+
+uint64_t triangleCountOf(uint32_t mode, uint64_t corners) {
+  if (mode == 4) return corners / 3;
+  return corners < 3 ? 0 : corners - 2;
+}
+
+uint64_t triangleCountOf(const GltfDocument& document, const GltfPrimitive& primitive) {
+  if (primitive.mode < 4 || !primitive.positions) return 0;
+  return triangleCountOf(primitive.mode, cornerCountOf(document, primitive));
+}
+
 }  // namespace sightline

@@ -130,6 +130,13 @@ struct GltfDocument {
   std::vector<std::string> warnings;
 };
 
+/// Corners in the list of a primitive with positions: its indices, or its vertices.
+uint64_t cornerCountOf(const GltfDocument& document, const GltfPrimitive& primitive);
+/// Triangles that so many corners make by a mode of 4, 5 or 6.
+uint64_t triangleCountOf(uint32_t mode, uint64_t corners);
+/// Of a primitive: none of points and lines, and without positions.
+uint64_t triangleCountOf(const GltfDocument& document, const GltfPrimitive& primitive);
+
 /// The matrix of a translation, a rotation by the quaternion x, y, z, w, and a scale. A quaternion that is
 /// not quite unit is scaled to it; one of zeros turns nothing.
 glm::dmat4 gltfPlace(const glm::dvec3& translation, const glm::dvec4& rotation, const glm::dvec3& scale);

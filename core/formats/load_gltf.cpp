@@ -82,14 +82,7 @@ class GltfLoader {
     return primitive.mode >= 4 && primitive.positions;
   }
 
-  uint64_t elementCount(const GltfPrimitive& primitive) const {
-    return document_.accessors[primitive.indices ? *primitive.indices : *primitive.positions].count;
-  }
-
-  static uint64_t triangleCount(const GltfPrimitive& primitive, uint64_t elements) {
-    if (primitive.mode == 4) return elements / 3;
-    return elements < 3 ? 0 : elements - 2;
-  }
+  uint64_t elementCount(const GltfPrimitive& primitive) const { return cornerCountOf(document_, primitive); }
 
   /// A mesh with the morph targets of its nodes, which several of them show.
   struct SharedMesh {
@@ -110,7 +103,7 @@ class GltfLoader {
   uint64_t triangleCount(const GltfMesh& mesh) const {
     uint64_t sum = 0;
     for (const GltfPrimitive& primitive : mesh.primitives) {
-      if (hasTriangles(primitive)) sum += triangleCount(primitive, elementCount(primitive));
+      sum += triangleCountOf(document_, primitive);
     }
     return sum;
   }
@@ -313,8 +306,8 @@ class GltfLoader {
     for (const GltfInstance& instance : tree_.instances) {
       for (const GltfPrimitive& primitive : document_.meshes[instance.mesh].primitives) {
         if (!hasTriangles(primitive)) continue;
-        triangles += triangleCount(primitive, elementCount(primitive));
-        if (sharedMesh(instance) == nullptr) stored += triangleCount(primitive, elementCount(primitive));
+        triangles += triangleCountOf(document_, primitive);
+        if (sharedMesh(instance) == nullptr) stored += triangleCountOf(document_, primitive);
         if (primitive.indices) index_accessors.insert(*primitive.indices);
         if (sources.insert(sourceOf(instance, primitive)).second) {
           positions += document_.accessors[*primitive.positions].count;
@@ -405,7 +398,7 @@ class GltfLoader {
   template <typename Corner>
   void addTriangles(uint32_t mode, uint64_t elements, const GltfVertexRun& vertices, const std::string& where,
                     const Corner& corner) {
-    const uint64_t count = mode == 4 ? elements / 3 : (elements < 3 ? 0 : elements - 2);
+    const uint64_t count = triangleCountOf(mode, elements);
     const auto next = [&](uint64_t i) { return int64_t(corner(i)); };
     uint64_t triangle = 0;
     const SceneBuilder::Place place = [&] { return fmt::format("{}, triangle {}", where, triangle); };

@@ -12,13 +12,7 @@ namespace sightline {
 namespace {
 
 SceneLoader* loaderOf(std::string_view bytes, const std::filesystem::path& file) {
-  const std::optional<SceneFormat> by_content = formatOfContent(bytes);
-  const std::optional<SceneFormat> format = by_content ? by_content : formatOfName(file);
-  if (!format) {
-    throw Error(fmt::format("{}: unknown extension \"{}\", expected .obj, .gltf, .glb, .ply or .b3dm",
-                            file.string(), lowerExtension(file)));
-  }
-  switch (*format) {
+  switch (formatOf(bytes, file)) {
     case SceneFormat::kObj:
       return loadObj;
     case SceneFormat::kGltf:

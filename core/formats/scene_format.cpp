@@ -1,8 +1,11 @@
 #include "core/formats/scene_format.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
+#include "core/base/error.h"
 #include "core/io/file_io.h"
 
 namespace sightline {
@@ -88,6 +91,13 @@ std::optional<SceneFormat> formatOfName(const std::filesystem::path& file) {
   if (extension == ".ply") return SceneFormat::kPly;
   if (extension == ".b3dm") return SceneFormat::kB3dm;
   return std::nullopt;
+}
+
+SceneFormat formatOf(std::string_view bytes, const std::filesystem::path& file) {
+  if (const auto format = formatOfContent(bytes)) return *format;
+  if (const auto format = formatOfName(file)) return *format;
+  throw Error(fmt::format("{}: unknown extension \"{}\", expected .obj, .gltf, .glb, .ply or .b3dm",
+                          file.string(), lowerExtension(file)));
 }
 
 std::string foreignContent(std::string_view bytes) {

@@ -375,6 +375,7 @@ CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint3
   if (const auto problem = cellProblem(cell)) {
     throw Error(fmt::format("cell {}, {}: {}", cell_index, cell.name, problem->text()), kExitUsage);
   }
+  requireDrawable(params.method, scene);
   if (params.method == Method::kNaive && !device.info().naive) {
     throw Error(
         device.info().id + ": the method naive takes a device of makeNaiveDevice; on this one it is gvs++",

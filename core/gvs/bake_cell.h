@@ -31,6 +31,10 @@ void checkParams(const BakeParams& params);
 /// Vulkan.
 void requireMethodOn(Method method, const std::string& device);
 
+/// Throws Error (wrong usage) if the method draws, which takes every triangle as opaque from both sides, and
+/// the scene has others: it would hide what is behind holes, glass and backs.
+void requireDrawable(Method method, const Scene& scene);
+
 /// Computes the PVS of one cell by params.method on `device`, which holds `scene`: by default GVS++ (Koch and
 /// Wimmer 2021; thesis, algorithms 5.1 and 6.1 to 6.4). cell_index numbers the cell in its bake: it enters
 /// the random shifts only. The naive method is gvs++ on a device of makeNaiveDevice

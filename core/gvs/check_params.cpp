@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "core/base/error.h"
 #include "core/gvs/bake_cell.h"
 #include "core/pvs/param_table.h"
@@ -26,6 +28,16 @@ void checkParams(const BakeParams& params) {
 void requireMethodOn(Method method, const std::string& device) {
   if (method != Method::kRaster || device.starts_with("vulkan")) return;
   throw Error("the method raster draws by Vulkan: use --device vulkan, not " + device, kExitUsage);
+}
+
+void requireDrawable(Method method, const Scene& scene) {
+  if (method != Method::kRaster || scene.surfaces.empty()) return;
+  const SurfaceCounts counts = countSurfaces(scene.surfaces);
+  throw Error(
+      fmt::format("the method raster draws every triangle as opaque from both sides; of this scene {} have "
+                  "holes, {} are glass, {} have no back: use another method",
+                  counts.masked, counts.glass, counts.front_only),
+      kExitUsage);
 }
 
 }  // namespace sightline

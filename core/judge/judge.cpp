@@ -53,7 +53,8 @@ bool ExactHit::contains(uint32_t triangle) const {
   return std::binary_search(triangles.begin(), triangles.end(), triangle);
 }
 
-Judge::Judge(const Scene& scene, const Bvh& bvh) : scene_(scene), candidates_(bvh) {}
+Judge::Judge(const Scene& scene, const Bvh& bvh)
+    : scene_(scene), candidates_(bvh), has_glass_(featuresOf(scene.surfaces).glass) {}
 
 JudgeTriangle Judge::corners(uint32_t triangle) const {
   const auto t = scene_.corners(triangle);
@@ -89,13 +90,28 @@ bool Judge::meets(const JudgeRay& ray, uint32_t triangle) const {
   return meetsSurface(scene_.surfaces, triangle, ray, shape);
 }
 
+std::vector<uint32_t> Judge::glassBefore(const JudgeRay& ray, const ExactHit& end) const {
+  std::vector<uint32_t> glass;
+  if (!has_glass_) return glass;
+  const double limit = end.missed() ? HUGE_VAL : end.t.high;
+  const auto visit = [&](uint32_t triangle) {
+    if (isGlass(triangle) && meets(ray, triangle) && !isBehind(ray, triangle, end)) glass.push_back(triangle);
+  };
+  candidates_.walk(ray, 0, visit, [=] { return limit; });
+  std::sort(glass.begin(), glass.end());
+  glass.erase(std::unique(glass.begin(), glass.end()), glass.end());
+  return glass;
+}
+
+bool Judge::isBehind(const JudgeRay& ray, uint32_t triangle, const ExactHit& end) const {
+  if (end.missed()) return false;
+  return compare(*exactPlaneDistance(ray, corners(triangle)),
+                 *exactPlaneDistance(ray, corners(end.triangles.front()))) > 0;
+}
+
 bool Judge::sees(const JudgeRay& ray, uint32_t triangle) const {
   if (!isGlass(triangle)) return nearest(ray).contains(triangle);
-  if (!meets(ray, triangle)) return false;
-  const ExactHit end = nearest(ray);
-  if (end.missed()) return true;
-  return compare(*exactPlaneDistance(ray, corners(triangle)),
-                 *exactPlaneDistance(ray, corners(end.triangles.front()))) <= 0;
+  return meets(ray, triangle) && !isBehind(ray, triangle, nearest(ray));
 }
 
 std::vector<uint32_t> Judge::near(const JudgeRay& ray, double reach, double limit) const {

@@ -33,9 +33,13 @@ class Judge {
   /// Whether the ray meets the triangle at all.
   bool meets(const JudgeRay& ray, uint32_t triangle) const;
 
+  /// The glass that the ray meets no farther than where it ends, which is `end` = nearest(ray): ascending.
+  std::vector<uint32_t> glassBefore(const JudgeRay& ray, const ExactHit& end) const;
+
   /// Whether the ray sees the triangle: it ends there, or meets it as glass no farther than where it ends.
   bool sees(const JudgeRay& ray, uint32_t triangle) const;
 
+  bool hasGlass() const { return has_glass_; }
   /// Whether rays go on behind the triangle.
   bool isGlass(uint32_t triangle) const { return (scene_.surfaces.of(triangle) & kSurfaceGlass) != 0; }
 
@@ -57,8 +61,12 @@ class Judge {
   uint32_t triangleCount() const { return scene_.triangleCount(); }
 
  private:
+  /// Whether it meets a triangle, which it meets, farther than where it ends.
+  bool isBehind(const JudgeRay& ray, uint32_t triangle, const ExactHit& end) const;
+
   const Scene& scene_;
   CandidateWalk candidates_;
+  bool has_glass_;
 };
 
 }  // namespace sightline

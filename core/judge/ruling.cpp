@@ -41,10 +41,11 @@ class RoundingSearch {
   RoundingSearch(const Judge& judge, const JudgeRay& ray, double steps)
       : judge_(judge), ray_(ray), frame_(ray.direction), steps_(steps) {}
 
-  /// Whether all that is surely nearer than `limit` and surely before the origin can be got past. radius:
-  /// where to look for it, world units.
-  bool canPassUpTo(double limit, double radius) {
-    findObstacles(limit, radius);
+  /// Whether all triangles in the way (inTheWay(triangle)) that are surely nearer than `limit` and surely
+  /// before the origin can be got past. radius: where to look for them, world units.
+  template <typename InTheWay>
+  bool canPassUpTo(double limit, double radius, const InTheWay& inTheWay) {
+    findObstacles(limit, radius, inTheWay);
     joinPieces();
     for (size_t i = 0; i < obstacles_.size(); ++i) {
       if (pieceOf(i) == i && !canPass(i)) return false;
@@ -59,9 +60,10 @@ class RoundingSearch {
     double reach;  ///< by how much it may be moved, world units
   };
 
-  void findObstacles(double limit, double radius) {
+  template <typename InTheWay>
+  void findObstacles(double limit, double radius, const InTheWay& inTheWay) {
     for (const uint32_t triangle : judge_.near(ray_, radius, limit)) {
-      if (judge_.isGlass(triangle)) continue;  // nothing is behind it
+      if (!inTheWay(triangle)) continue;
       const SeenTriangle seen(judge_.corners(triangle), ray_, frame_);
       const double reach = steps_ * floatStep(judge_, ray_, triangle);
       if (seen.distance() > reach) continue;
@@ -168,6 +170,15 @@ double stepsOutOfHole(const Judge& judge, const JudgeRay& ray, uint32_t triangle
   return HUGE_VAL;
 }
 
+/// How many float steps the ray passes beside the triangle; 0: it meets it.
+double stepsBeside(const Judge& judge, const JudgeRay& ray, uint32_t triangle, const RoundingLimit& limit) {
+  if (judge.meets(ray, triangle)) return 0;
+  const double step = floatStep(judge, ray, triangle);
+  const double steps = SeenTriangle(judge.corners(triangle), ray, RayFrame(ray.direction)).distance() / step;
+  if (steps == 0 && judge.isPassable(triangle)) return stepsOutOfHole(judge, ray, triangle, step, limit);
+  return steps;
+}
+
 }  // namespace
 
 double floatStep(const Judge& judge, const JudgeRay& ray, uint32_t triangle) {
@@ -189,11 +200,8 @@ Ruling rule(const Judge& judge, const Ray& float_ray, const Hit& answer, const E
   Ruling ruling;
   if (hit) {
     const double step = floatStep(judge, ray, answer.triangle);
-    const bool meets = exact.contains(answer.triangle) || judge.meets(ray, answer.triangle);
-    const SeenTriangle seen(judge.corners(answer.triangle), ray, RayFrame(ray.direction));
-    if (!meets) ruling.steps_beside = seen.distance() / step;
-    if (!meets && ruling.steps_beside == 0 && judge.isPassable(answer.triangle))
-      ruling.steps_beside = stepsOutOfHole(judge, ray, answer.triangle, step, limit);
+    if (!exact.contains(answer.triangle))
+      ruling.steps_beside = stepsBeside(judge, ray, answer.triangle, limit);
     const DoubleRange t = possibleDistances(judge, ray, answer.triangle, limit.steps * step);
     const double rounding = std::fabs(t.high) * 4 * kFloatRounding;
     const bool far = judge_distance && (answer.t < t.low - rounding || answer.t > t.high + rounding);
@@ -208,9 +216,64 @@ Ruling rule(const Judge& judge, const Ray& float_ray, const Hit& answer, const E
   for (const uint32_t triangle : exact.triangles) {
     radius = std::max(radius, limit.steps * floatStep(judge, ray, triangle));
   }
-  const bool rounded = RoundingSearch(judge, ray, limit.steps).canPassUpTo(farthest, radius);
+  const bool rounded =
+      RoundingSearch(judge, ray, limit.steps).canPassUpTo(farthest, radius, [&](uint32_t triangle) {
+        return !judge.isGlass(triangle);  // nothing is behind glass
+      });
   ruling.verdict = rounded ? Verdict::kRounded : Verdict::kMissed;
   return ruling;
+}
+
+Ruling ruleGlass(const Judge& judge, const Ray& float_ray, const Hit& answer, std::span<const uint32_t> glass,
+                 const ExactHit& exact, const RoundingLimit& limit) {
+  const JudgeRay ray = judgeRay(float_ray);
+  const bool hit = answer.triangle != kNoTriangle;
+  if (hit && answer.triangle >= judge.triangleCount()) return {};
+  const std::vector<uint32_t> seen = judge.glassBefore(ray, exact);
+  const bool ends_right = hit ? exact.contains(answer.triangle) : exact.missed();
+  if (ends_right && std::ranges::equal(seen, glass)) return {};
+
+  DoubleRange end{HUGE_VAL, HUGE_VAL};  // where the ray ends, up to rounding
+  if (hit) {
+    const double reach = limit.steps * floatStep(judge, ray, answer.triangle);
+    end = possibleDistances(judge, ray, answer.triangle, reach);
+  }
+  Ruling ruling;
+  double radius = 0;
+  for (const uint32_t triangle : glass) {
+    if (triangle >= judge.triangleCount() || !judge.isGlass(triangle)) return {Verdict::kWrong, HUGE_VAL};
+    const double reach = limit.steps * floatStep(judge, ray, triangle);
+    radius = std::max(radius, reach);
+    if (std::ranges::binary_search(seen, triangle)) continue;
+    const double steps = stepsBeside(judge, ray, triangle, limit);
+    ruling.steps_beside = std::max(ruling.steps_beside, steps);
+    const DoubleRange t = possibleDistances(judge, ray, triangle, reach);
+    if (steps > limit.steps || t.high <= 0 || t.low > end.high) {
+      ruling.verdict = Verdict::kWrong;
+      return ruling;
+    }
+    ruling.verdict = Verdict::kRounded;
+  }
+  for (const uint32_t triangle : seen) {
+    radius = std::max(radius, limit.steps * floatStep(judge, ray, triangle));
+    if (!std::ranges::binary_search(glass, triangle)) ruling.verdict = Verdict::kRounded;
+  }
+  const auto left_out = [&](uint32_t triangle) {
+    return judge.isGlass(triangle) && !std::ranges::binary_search(glass, triangle);
+  };
+  if (!RoundingSearch(judge, ray, limit.steps).canPassUpTo(end.low, radius, left_out))
+    ruling.verdict = Verdict::kMissed;
+  return ruling;
+}
+
+Ruling ruleSight(const Judge& judge, const Ray& ray, const Hit& answer, std::span<const uint32_t> glass,
+                 const ExactHit& exact, const RoundingLimit& limit) {
+  const Ruling end = rule(judge, ray, answer, exact, limit);
+  if (!judge.hasGlass() || end.verdict == Verdict::kMissed || end.verdict == Verdict::kWrong) return end;
+  const Ruling before = ruleGlass(judge, ray, answer, glass, exact, limit);
+  if (before.verdict < end.verdict) return end;
+  if (end.verdict < before.verdict) return before;
+  return before.steps_beside > end.steps_beside ? before : end;
 }
 
 }  // namespace sightline

@@ -1,4 +1,6 @@
 #pragma once
+#include <span>
+
 #include "core/judge/judge.h"
 #include "core/shared/types.h"
 
@@ -44,5 +46,17 @@ double floatStep(const Judge& judge, const JudgeRay& ray, uint32_t triangle);
 /// triangle alone.
 Ruling rule(const Judge& judge, const Ray& ray, const Hit& answer, const ExactHit& exact,
             const RoundingLimit& limit = {}, bool judge_distance = true);
+
+/// Rules on the glass that a device says a ray sees, ascending; `answer` is what it says ends the ray,
+/// `exact` judge.nearest of the ray. Right: it is judge.glassBefore. Else each triangle that is listed must
+/// be glass that the ray passes within limit.steps, no farther than the answer up to rounding, or the list is
+/// wrong; and what glass is left out, surely nearer than the answer, must be such that the ray can pass it as
+/// in rule(), or glass is missed. Of an answer that is missed or wrong itself nothing more is said: right.
+Ruling ruleGlass(const Judge& judge, const Ray& ray, const Hit& answer, std::span<const uint32_t> glass,
+                 const ExactHit& exact, const RoundingLimit& limit = {});
+
+/// The worse of rule and ruleGlass.
+Ruling ruleSight(const Judge& judge, const Ray& ray, const Hit& answer, std::span<const uint32_t> glass,
+                 const ExactHit& exact, const RoundingLimit& limit = {});
 
 }  // namespace sightline

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/sampling/numbered_rays.h"
+#include "core/trace/sights.h"
 
 namespace sightline {
 namespace {
@@ -28,22 +29,20 @@ std::vector<std::vector<uint64_t>> countMissingRays(Tracer& tracer, const ViewCe
     by_level[s].assign(sets[s].prefixes.size() + 1, 0);
   });
   std::vector<Ray> batch(std::min(rays, kChunk));
-  std::vector<Hit> hits(batch.size());
+  Sights sights;
   for (uint32_t first = 0; first < rays; first += kChunk) {
     const uint32_t count = std::min(rays - first, kChunk);
     tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });
-    const auto traced = std::span(batch).first(count);
-    tracer.traceRays(traced, std::span(hits).first(count));
-    const std::vector<SeenThrough> glass = tracer.traceGlass(traced, std::span(hits).first(count));
+    sights.trace(tracer, std::span(batch).first(count));
     tbb::parallel_for(size_t(0), sets.size(), [&](size_t s) {
-      auto through = glass.begin();
       for (uint32_t i = 0; i < count; ++i) {
         // A ray is missed by the prefixes that miss anything that it sees.
-        uint16_t level = hits[i].triangle == kNoTriangle ? uint16_t(0) : levels[s][hits[i].triangle];
-        const bool sees = hits[i].triangle != kNoTriangle || (through != glass.end() && through->ray == i);
-        for (; through != glass.end() && through->ray == i; ++through) {
-          level = std::max(level, levels[s][through->triangle]);
-        }
+        uint16_t level = 0;
+        bool sees = false;
+        sights.visit(i, [&](uint32_t triangle) {
+          level = std::max(level, levels[s][triangle]);
+          sees = true;
+        });
         if (sees) ++by_level[s][level];
       }
     });

@@ -192,14 +192,6 @@ class Planner {
 
 }  // namespace
 
-uint64_t triangleCountOf(const GltfDocument& document, const GltfPrimitive& primitive) {
-  if (primitive.mode < 4 || !primitive.positions) return 0;
-  const size_t accessor = primitive.indices ? *primitive.indices : *primitive.positions;
-  const uint64_t elements = document.accessors[accessor].count;
-  if (primitive.mode == 4) return elements / 3;
-  return elements < 3 ? 0 : elements - 2;
-}
-
 std::vector<MeshPlan> planMeshes(const GltfDocument& document, const json& root, const StripInput& input,
                                  StripReport& report) {
   return Planner(document, root, input, report).run();

@@ -21,9 +21,6 @@ struct MeshPlan {
                          ///< keeps one, since a mesh must have something
 };
 
-/// How many triangles the primitive has.
-uint64_t triangleCountOf(const GltfDocument& document, const GltfPrimitive& primitive);
-
 /// A plan for each mesh. root: of the document's JSON. Fills in the report's triangles, objects and notes.
 std::vector<MeshPlan> planMeshes(const GltfDocument& document, const nlohmann::json& root,
                                  const StripInput& input, StripReport& report);

@@ -8,6 +8,7 @@
 #include <tuple>
 
 #include "core/sampling/numbered_rays.h"
+#include "core/trace/sights.h"
 
 namespace sightline {
 namespace {
@@ -15,27 +16,52 @@ namespace {
 /// Rays that are traced at once: bounds the memory.
 constexpr uint32_t kLostChunk = 1u << 21;
 
-/// Compressed lists of indices may turn triangles: their corners in an order of their own.
-std::array<glm::vec3, 3> sorted(std::array<glm::vec3, 3> corners) {
-  std::sort(corners.begin(), corners.end(), [](const glm::vec3& a, const glm::vec3& b) {
-    return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
-  });
+/// Where a triangle's corners are, in an order of their own: compressed lists of indices may turn triangles.
+using SortedCorners = std::array<glm::vec3, 3>;
+
+bool isLess(const glm::vec3& a, const glm::vec3& b) {
+  return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
+}
+
+SortedCorners sortedCorners(const Scene& scene, uint32_t id) {
+  SortedCorners corners = scene.corners(id);
+  std::sort(corners.begin(), corners.end(), isLess);
   return corners;
 }
 
-/// Whether the rays' first hits are the same, or nothing in both scenes.
-bool isSame(const Scene& original, const Hit& before, const Scene& stripped, const Hit& after) {
-  if (before.triangle == kNoTriangle) return after.triangle == kNoTriangle;
-  if (after.triangle == kNoTriangle) return false;
-  return sorted(original.corners(before.triangle)) == sorted(stripped.corners(after.triangle));
+/// What a ray sees in a scene, whatever the ids: triangles in an order of their own, equal ones once.
+void placesOf(const Scene& scene, const Sights& sights, uint32_t ray, std::vector<SortedCorners>& places) {
+  places.clear();
+  sights.visit(ray, [&](uint32_t id) { places.push_back(sortedCorners(scene, id)); });
+  std::sort(places.begin(), places.end(), [](const SortedCorners& a, const SortedCorners& b) {
+    return std::ranges::lexicographical_compare(a, b, isLess);
+  });
+  places.erase(std::unique(places.begin(), places.end()), places.end());
 }
 
-bool holds(const Scene& scene, const std::array<glm::vec3, 3>& corners) {
-  for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
-    if (sorted(scene.corners(id)) == corners) return true;
+/// Whether a scene has triangles of another one: asked often for the same.
+class Kept {
+ public:
+  Kept(const Scene& original, const Scene& stripped) : original_(original), stripped_(stripped) {}
+
+  bool has(uint32_t id) {
+    const auto [entry, is_new] = known_.try_emplace(id, false);
+    if (is_new) entry->second = find(sortedCorners(original_, id));
+    return entry->second;
   }
-  return false;
-}
+
+ private:
+  bool find(const SortedCorners& corners) const {
+    for (uint32_t id = 0; id < stripped_.triangleCount(); ++id) {
+      if (sortedCorners(stripped_, id) == corners) return true;
+    }
+    return false;
+  }
+
+  const Scene& original_;
+  const Scene& stripped_;
+  std::map<uint32_t, bool> known_;
+};
 
 }  // namespace
 
@@ -43,16 +69,17 @@ uint64_t markSeen(const TracedScene& scene, const ViewCell& cell, uint32_t cell_
                   uint32_t rays, std::vector<bool>& seen, const RayProgress& progress) {
   const NumberedRays numbered(cellFaces(cell), haltonShifts(seed, cell_index, RandomUse::kCounting), rays);
   std::vector<Ray> batch(std::min(rays, kLostChunk));
-  std::vector<Hit> hits(batch.size());
+  Sights sights;
   uint64_t marked = 0;
   for (uint32_t first = 0; first < rays; first += kLostChunk) {
     const uint32_t count = std::min(rays - first, kLostChunk);
     tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });
-    scene.tracer.traceRays(std::span(batch).first(count), std::span(hits).first(count));
+    sights.trace(scene.tracer, std::span(batch).first(count));
     for (uint32_t i = 0; i < count; ++i) {
-      if (hits[i].triangle == kNoTriangle || seen[hits[i].triangle]) continue;
-      seen[hits[i].triangle] = true;
-      ++marked;
+      sights.visit(i, [&](uint32_t id) {
+        marked += seen[id] ? 0 : 1;
+        seen[id] = true;
+      });
     }
     if (progress && !progress(first + uint64_t(count))) break;
   }
@@ -63,22 +90,22 @@ LostRays countLostRays(const TracedScene& original, const TracedScene& stripped,
                        uint32_t cell_index, uint64_t seed, uint32_t& rays, const RayProgress& progress) {
   const NumberedRays numbered(cellFaces(cell), haltonShifts(seed, cell_index, RandomUse::kChecking), rays);
   std::vector<Ray> batch(std::min(rays, kLostChunk));
-  std::vector<Hit> before(batch.size()), after(batch.size());
-  std::map<uint32_t, bool> known;  // whether the other scene has a triangle of the original
+  Sights before, after;
+  std::vector<SortedCorners> places_before, places_after;
+  Kept kept(original.scene, stripped.scene);
   LostRays result;
   for (uint32_t first = 0; first < rays; first += kLostChunk) {
     const uint32_t count = std::min(rays - first, kLostChunk);
     tbb::parallel_for(0u, count, [&](uint32_t i) { batch[i] = numbered.at(first + i); });
-    original.tracer.traceRays(std::span(batch).first(count), std::span(before).first(count));
-    stripped.tracer.traceRays(std::span(batch).first(count), std::span(after).first(count));
+    before.trace(original.tracer, std::span(batch).first(count));
+    after.trace(stripped.tracer, std::span(batch).first(count));
     for (uint32_t i = 0; i < count; ++i) {
-      if (isSame(original.scene, before[i], stripped.scene, after[i])) continue;
-      const uint32_t id = before[i].triangle;
-      const auto [entry, is_new] = known.try_emplace(id, true);
-      if (is_new && id != kNoTriangle) {
-        entry->second = holds(stripped.scene, sorted(original.scene.corners(id)));
-      }
-      ++(entry->second ? result.ties : result.lost);
+      placesOf(original.scene, before, i, places_before);
+      placesOf(stripped.scene, after, i, places_after);
+      if (places_before == places_after) continue;
+      bool lost = false;
+      before.visit(i, [&](uint32_t id) { lost = lost || !kept.has(id); });
+      ++(lost ? result.lost : result.ties);
     }
     if (progress && !progress(first + uint64_t(count))) rays = first + count;
   }

@@ -236,7 +236,7 @@ class GltfStripper {
     for (const GltfBuffer& buffer : document_.buffers) {
       if (!buffer.uri || buffer.uri->starts_with("data:")) continue;
       std::error_code ignored;
-      for (const std::string& uri : {*buffer.uri, unescaped(*buffer.uri)}) {
+      for (const std::string& uri : {*buffer.uri, percentDecoded(*buffer.uri)}) {
         const std::filesystem::path read = input_.file.parent_path() / uri;
         if (std::filesystem::equivalent(read, path, ignored) ||
             read.lexically_normal() == path.lexically_normal()) {
@@ -245,21 +245,6 @@ class GltfStripper {
       }
     }
     return false;
-  }
-
-  static std::string unescaped(const std::string& uri) {
-    std::string text;
-    for (size_t i = 0; i < uri.size(); ++i) {
-      unsigned value = 0;
-      if (uri[i] == '%' && i + 2 < uri.size() &&
-          std::sscanf(uri.substr(i + 1, 2).c_str(), "%2x", &value) == 1) {
-        text += char(value);
-        i += 2;
-      } else {
-        text += uri[i];
-      }
-    }
-    return text;
   }
 
   void editBuffers(const std::vector<ChangedBuffer>& changed) {

@@ -5,33 +5,31 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/formats/scene_format.h"
+#include "core/formats/utf16.h"
 #include "core/io/file_io.h"
 #include "core/strip/strip_formats.h"
 
 namespace sightline {
 namespace {
 
-constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
-
-bool isPly(std::string_view bytes) {
-  if (bytes.starts_with(kUtf8Mark)) bytes.remove_prefix(kUtf8Mark.size());
-  return bytes.starts_with("ply\n") || bytes.starts_with("ply\r");
-}
-
-bool isUtf16(std::string_view bytes) {
-  return bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
-}
-
 Stripped strip(const StripInput& input) {
   const std::string name = input.file.string();
-  if (isUtf16(input.bytes)) {
+  if (fromUtf16(input.bytes)) {
     throw Error(fmt::format("{}: is UTF-16, which is not written; save it as UTF-8 first", name));
   }
-  if (input.bytes.starts_with("b3dm")) {
-    throw Error(fmt::format("{}: is a 3D Tile, which is not written; take the glTF out of it first", name));
+  switch (formatOf(input.bytes, input.file)) {
+    case SceneFormat::kObj:
+      return stripObj(input);
+    case SceneFormat::kGltf:
+    case SceneFormat::kGlb:
+      return stripGltf(input);
+    case SceneFormat::kPly:
+      return stripPly(input);
+    case SceneFormat::kB3dm:
+      break;
   }
-  if (isPly(input.bytes)) return stripPly(input);
-  return input.scene.objects[0].part ? stripGltf(input) : stripObj(input);
+  throw Error(fmt::format("{}: is a 3D Tile, which is not written; take the glTF out of it first", name));
 }
 
 void refuseOtherKind(const std::filesystem::path& file, const std::filesystem::path& out) {

@@ -63,6 +63,26 @@ TEST_F(Raster, SeesBothSidesOfATriangleAndAFlatCellLooksAlongItsNormal) {
   }
 }
 
+TEST(RasterMethod, RefusesScenesWhoseSurfacesItWouldNotDraw) {
+  for (const uint32_t surface : {kSurfaceGlass, kSurfaceFrontOnly}) {
+    SceneOfBoxes boxes;
+    boxes.addBox({-5, -5, -5}, {5, 5, 5});
+    Scene scene = boxes.finish();
+    scene.surfaces.words.assign(scene.triangleCount(), 0u);
+    scene.surfaces.words[3] = surface;
+    BakeParams raster = quickParams();
+    raster.method = Method::kRaster;
+    try {
+      bakeOn("cpu", scene, {"cell", {0, 0, 0}, {1, 1, 1}}, raster);
+      FAIL() << surface;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("draws every triangle as opaque"), std::string::npos)
+          << error.what();
+      EXPECT_EQ(error.exitCode(), kExitUsage);
+    }
+  }
+}
+
 /// All that is in front of the face is drawn, to the horizon on all sides; what is behind the face is not.
 TEST_F(Raster, SeesTheWholeHemisphereInFrontOfAFace) {
   SceneOfBoxes boxes;

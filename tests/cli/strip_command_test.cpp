@@ -17,7 +17,7 @@ using test::expectRun;
 using test::readText;
 using test::runProgram;
 
-constexpr const char* kQuick = " --device cpu --n-rand 100k --validation-rays 50k --check-rays 50k";
+constexpr const char* kQuick = " --device cpu --n-rand 100k --validation-rays 50k --check-rays 50k --tight";
 
 /// A box in a box, as two objects, and a cell between them.
 class BoxInBox {
@@ -54,7 +54,8 @@ TEST(StripCommand, DropsWhatIsNotSeenFromOutside) {
     expectRun(command, 1, {"is there already; name another file, or --overwrite it"});
     // Of the bake of so few rays hardly anything is left but what --rays find.
     expectRun("strip " + (files / (std::string("a") + kind)) + " -o " + out +
-                  " --overwrite --device cpu --n-rand 1 --max-rays 1 --validation-rays 0 --rays 50k",
+                  " --overwrite --device cpu --n-rand 1 --max-rays 1 --validation-rays 0 --aimed 0 --tight "
+                  "--rays 50k",
               0, {"rays: 50.0k from each cell meet ", ": 12 of 24 triangles (50.0 %)"});
     expectRun(command + " --overwrite --keep-objects", 0,
               {"13 of 24 triangles", "0 with all that they have"});
@@ -74,6 +75,14 @@ TEST(StripCommand, TakesCellsOrABakeOfThem) {
   const Scene left = loadScene(files / "b.glb");
   EXPECT_EQ(left.objects[0].triangle_count, 12u);
   EXPECT_EQ(left.objects[1].triangle_count, 4u);
+  // Each of the core's other sides borders on one of these, by one of its two triangles or by both.
+  const std::string wide = std::string(kQuick).substr(0, std::string(kQuick).find(" --tight"));
+  expectRun("strip " + scene + " -o " + (files / "e.glb") + " --from " + pvs + wide, 0,
+            {" of 500 rays of each cell at each triangle that would go meet ", "; the last none that goes",
+             " stay because they share an edge with one that is seen"});
+  const uint32_t margin = loadScene(files / "e.glb").objects[1].triangle_count;
+  EXPECT_GT(margin, 7u);
+  EXPECT_LT(margin, 12u);
   expectRun("strip " + (files / "b.glb") + " -o " + (files / "d.glb") + " --from " + pvs + kQuick, 1,
             {"a.pvs"});
 }
