@@ -26,7 +26,8 @@ readonly mesa_version=25
 
 usage() {
   cat <<'TEXT'
-usage: ./build.sh demo [--small]   build, bake a generated city, draw pictures of it into out/demo/
+usage: ./build.sh demo [--small]   build, bake a generated city, draw pictures of it and replay a walk into
+                               out/demo/
        ./build.sh test [ARGS...]   build and run all tests but those under a simulated device (label checker, a
                                    minute); ARGS go to ctest instead, e.g. -R Golden, -L checker
 
@@ -207,7 +208,7 @@ runDemo() {
   rm -rf "$out"
   mkdir -p "$out"
   say "generating a city of $triangles triangles and view cells along a street"
-  "$sightline" scene city -o "$out/city.glb" --triangles "$triangles" --seed 1
+  "$sightline" scene city -o "$out/city.glb" --triangles "$triangles" --seed 1 --walk "$out/walk.json" --frames 60
   "$sightline" cells "$out/city.glb" -o "$out/cells.json" --path "$street,1.5,-75" "$street,1.5,75" --length 50
   say "baking (device: $device)"
   "$sightline" bake "$out/city.glb" --cells "$out/cells.json" -o "$out/city.pvs" --report "$out/report.json" \
@@ -219,6 +220,13 @@ runDemo() {
         -o "$out/cell-$((cell + 1))-$view.png" "${size[@]}"
     done
   done
+  say "replaying a short walk by culling methods"
+  local walk=("$out/city.glb" --path "$out/walk.json" --pvs "$out/city.pvs" --resolution 160x90 --repeats 1
+              --trace-every 0 --html "$out/walk.html")
+  if ! "$sightline" walk "${walk[@]}" --methods none,vfc,opti-chc++,hiz,pvs+vfc --device vulkan 2>"$out/walk.log"; then
+    say "no Vulkan device draws here ($out/walk.log): the processor does"
+    "$sightline" walk "${walk[@]}" --methods vfc,opti-chc++,pvs+vfc --device cpu
+  fi
   say "pictures and results are in $root/$out"
 }
 

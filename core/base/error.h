@@ -7,7 +7,7 @@ namespace sightline {
 /// Exit codes of the command line (0: done).
 inline constexpr int kExitFailed = 1;
 inline constexpr int kExitUsage = 2;
-inline constexpr int kExitPastLimit = 3;  ///< crosscheck, verify, measure: past a given limit
+inline constexpr int kExitPastLimit = 3;  ///< crosscheck, verify, measure, walk: past a given limit
 
 /// What went wrong, as the one line that the user gets: file, place, what was expected, what to do.
 /// Example: "city.obj:812: vertex index 99 is out of range 1..42". Control characters, which the names in a

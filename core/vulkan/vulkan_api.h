@@ -79,11 +79,9 @@ namespace sightline {
   X(vkCmdDraw)                        \
   X(vkCmdDrawIndexed)                 \
   X(vkCmdDrawIndirect)                \
-  X(vkCmdDrawIndexedIndirect)         \
   X(vkCmdDrawIndirectCount)           \
   X(vkCmdDrawIndexedIndirectCount)    \
   X(vkCmdBindIndexBuffer)             \
-  X(vkCmdDispatchIndirect)            \
   X(vkCmdCopyImageToBuffer)
 // Only with VK_KHR_acceleration_structure.
 #define SL_VULKAN_STRUCTURE_FUNCTIONS(X)        \

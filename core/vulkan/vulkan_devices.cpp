@@ -104,9 +104,7 @@ std::vector<VulkanDeviceChoice> findVulkanDevices(const VulkanNeeds& needs) {
 }
 
 VulkanDeviceChoice selectVulkanDevice(const std::string& selector, const VulkanNeeds& needs) {
-  return selectDevice(
-      selector, "vulkan", findVulkanDevices(needs), rank,
-      "no Vulkan device found: install a driver with ray tracing, or use the devices cpu or opencl");
+  return selectDevice(selector, "vulkan", findVulkanDevices(needs), rank, needs.none);
 }
 
 }  // namespace sightline

@@ -42,6 +42,9 @@ struct VulkanNeeds {
   std::vector<VulkanFeature> welcome = {};    ///< those of these that the device has
   std::vector<const char*> extensions = {};   ///< besides those of the features
   VkQueueFlags queue = VK_QUEUE_COMPUTE_BIT;  ///< what one queue must do all of
+  /// What to say where there is no device at all.
+  const char* none =
+      "no Vulkan device found: install a driver with ray tracing, or use the devices cpu or opencl";
 };
 
 /// What a driver can do.

@@ -31,9 +31,16 @@ const MethodReplay* mainMethod(const WalkReport& report) {
   return nullptr;
 }
 
-uint32_t colorOf(const std::string& method) {
-  const auto& all = walkMethods();
-  return uint32_t(std::ranges::find(all, method, &WalkMethodInfo::name) - all.begin());
+/// By the method's place among those that were replayed, so that few methods have colours of their own.
+uint32_t colorOf(const WalkReport& report, const MethodReplay& method) {
+  return uint32_t(&method - report.replay.methods.data());
+}
+
+/// The name, which no line break cuts.
+std::string unbroken(const std::string& name) {
+  std::string text;
+  for (const char c : name) text += c == '-' ? "\u2011" : std::string(1, c);
+  return text;
 }
 
 size_t framesAPoint(size_t frames) {
@@ -94,7 +101,7 @@ ReportTable methodsTable(const WalkReport& report) {
     if (m.times.empty()) continue;
     const WalkSummary s = summarize(m, 0, std::max(m.times.size(), m.checks.size()));
     const bool checked = !m.checks.empty();
-    table.rows.push_back({m.name, digits(s.mean), digits(1000 / s.mean), digits(1000 / s.slowest_1),
+    table.rows.push_back({unbroken(m.name), digits(s.mean), digits(1000 / s.mean), digits(1000 / s.slowest_1),
                           digits(1000 / s.slowest_01), times(vfc_ms, s.mean),
                           report.gpu_times ? digits(s.gpu) : "-", digits(s.objects),
                           shortCount(uint64_t(s.triangles + 0.5)), digits(s.queries), digits(s.submits),
@@ -127,7 +134,7 @@ ReportTable stretchTable(const WalkReport& report, const std::vector<WalkStretch
   }
   for (const MethodReplay& m : report.replay.methods) {
     if (m.times.empty()) continue;
-    std::vector<std::string> row = {m.name};
+    std::vector<std::string> row = {unbroken(m.name)};
     for (const WalkStretch& s : stretches) {
       row.push_back(s.begin < m.times.size() ? digits(summarize(m, s.begin, s.end).mean) : "-");
     }
@@ -145,7 +152,7 @@ ReportChart methodsChart(const WalkReport& report, ReportChart chart, Of of, Sho
     if (frames == 0) continue;
     chart.series.push_back({.name = m.name,
                             .points = overFrames(frames, of, [&](size_t i) { return number(m, i); }),
-                            .color = colorOf(m.name)});
+                            .color = colorOf(report, m)});
   }
   return chart;
 }

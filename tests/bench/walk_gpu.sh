@@ -1,28 +1,27 @@
-#!/bin/sh
-# Drawing and culling of generated walks on a GPU: tests of what is drawn, then the cost of each way by part.
-# Arguments: the build folder, a folder for tables; then, to leave some out, the scenes.
-set -e
-build=$1
-out=$2
+#!/usr/bin/env bash
+# The four generated scenes along their walks, by all methods, on a GPU: reports, CSV and pages into a folder.
+# usage: walk_gpu.sh PROGRAM FOLDER [SCENE:TRIANGLES...]
+set -euo pipefail
+program=$(realpath "$1")
+mkdir -p "$2"
+cd "$2"
 shift 2
-mkdir -p "$out"
-SIGHTLINE_REQUIRE_VULKAN=1 "$build/tests/test_draw_vulkan" > "$out/test_draw_vulkan.txt" 2>&1 ||
-  echo "test_draw_vulkan failed: $out/test_draw_vulkan.txt"
-tail -n 3 "$out/test_draw_vulkan.txt"
-bench() {  # scene triangles, then further options
-  scene=$1 triangles=$2
-  shift 2
-  name=$(echo "$scene-$triangles$*" | tr -c 'a-z0-9\n' -)
-  "$build/tests/bench/bench_walk" --scene "$scene" --triangles "$triangles" "$@" | tee "$out/$name.txt"
-}
-for scene in ${*:-city bistro plant canyon}; do
-  # First: does it show what it should, at odd sizes too.
-  for size in "1 1" "97 61" "1000 3" "1279 719"; do
-    bench "$scene" 400000 --width "${size% *}" --height "${size#* }" --frames 200 --check 1
-  done
-  for triangles in 2000000 4000000 12000000; do
-    bench "$scene" "$triangles" --frames 300 --check 10
+(($# > 0)) || set -- city:3670000 city:12000000 plant:12700000 bistro:5660000 canyon:2240000
+frames=${SIGHTLINE_WALK_FRAMES:-1000}
+for wanted in "$@"; do
+  scene=${wanted%:*} triangles=${wanted#*:} name=${wanted/:/-}
+  "$program" scene "$scene" -o "$name.glb" --triangles "$triangles" --walk "$name-walk.json" --frames "$frames" --overwrite
+  "$program" cells "$name.glb" -o "$name-cells.json" --walk "$name-walk.json" --length 25 --overwrite
+  "$program" bake "$name.glb" --cells "$name-cells.json" -o "$name.pvs" --device opencl --overwrite \
+    --max-seconds "${SIGHTLINE_WALK_CELL_SECONDS:-1}" --validation-rays 0
+  for in_flight in 1 2; do
+    "$program" walk "$name.glb" --path "$name-walk.json" --pvs "$name.pvs" --device vulkan --in-flight "$in_flight" \
+      --trace-device opencl --max-false 0 --pictures "$name-pictures" --report "$name-$in_flight.json" \
+      --csv "$name-$in_flight.csv" --html "$name-$in_flight.html" || echo "$name: exit code $?"
   done
 done
-bench "${1:-city}" 12000000 --frames 300 --check 0 --split 512
-bench "${1:-city}" 12000000 --frames 300 --check 0 --width 640 --height 360
+# False pixels at odd sizes, a walk each.
+for size in 1x1 97x61 640x360 1000x1000 1279x719 1920x1080 333x777; do
+  "$program" walk "$name.glb" --path "$name-walk.json" --resolution "$size" --repeats 1 --trace-every 0 --max-false 0 \
+    --methods none,vfc,stop-and-wait,chc,chc++,opti-chc++,hiz,hiz-meshlets,boxes || echo "$name, $size: exit code $?"
+done

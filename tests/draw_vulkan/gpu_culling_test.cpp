@@ -2,6 +2,7 @@
 // they miss.
 #include "core/shared/box_extent.h"
 #include "tests/draw_vulkan/mixed_scene.h"
+#include "tests/support/random_triangles.h"
 
 namespace sightline {
 namespace {
@@ -178,6 +179,47 @@ TEST(GpuCulling, SeesThroughTheLastColumn) {
   EXPECT_GT(replay(city, GpuMethod::hiz, still, {.faults = {.floor_levels = true}}).false_pixels, 0u);
 }
 
+/// Views without any coherence: from anywhere, through walls, straight up and down.
+TEST(GpuCulling, ShowsEverythingFromAnywhere) {
+  SL_SKIP_WITHOUT_DRAWING();
+  const City city;
+  const AxisBox bounds = boundsOf(city.parts.drawables);
+  testing_support::Random random(5);
+  std::vector<Camera> views;
+  while (views.size() < 60) {
+    const glm::dvec3 share(random.unit(), random.unit() * 1.5f, random.unit());
+    const glm::dvec3 eye =
+        glm::dvec3(bounds.low) + share * (glm::dvec3(bounds.high) - glm::dvec3(bounds.low));
+    const glm::dvec3 along =
+        views.size() % 10 == 0 ? glm::dvec3(0, views.size() % 20 ? 1 : -1, 0) : glm::dvec3(random.point(1));
+    views.push_back(drawing_cases::cameraAt(city.parts, eye, eye + along, 47, 33));
+  }
+  expectExact(city, views, kCases);
+}
+
+/// Frames that nobody waits for come one after another, and the last is as if each had been waited for.
+TEST(GpuCulling, FramesInFlightChangeNothing) {
+  SL_SKIP_WITHOUT_DRAWING();
+  const City city;
+  const std::vector<Camera> path = city.path(100, 97, 61);
+  for (const Case& its : kCases) {
+    std::vector<float> depth[2];
+    std::vector<uint32_t> ids[2];
+    for (const bool waits : {false, true}) {
+      VulkanDrawing drawing("vulkan", city.scene, city.parts.drawables);
+      GpuCulling culling(drawing, its.method, {.mesh_shaders = its.mesh_shaders});
+      for (const Camera& camera : path) {
+        culling.drawFrame(camera);
+        if (waits) drawing.ring().drain();
+      }
+      depth[waits] = drawing.readDepth();
+      ids[waits] = drawing.readIds();
+    }
+    EXPECT_EQ(depth[0], depth[1]) << its.name;
+    EXPECT_EQ(ids[0], ids[1]) << its.name;
+  }
+}
+
 /// With candidates nothing else is drawn, and of them all that shows: as if they were the scene.
 TEST(GpuCulling, DrawsCandidatesOnly) {
   SL_SKIP_WITHOUT_DRAWING();
@@ -199,6 +241,10 @@ TEST(GpuCulling, DrawsCandidatesOnly) {
       backend.endFrame();
       EXPECT_EQ(depth, drawing.readDepth()) << its.name << ", frame " << frame;
     }
+    culling.drawFrame(city.path(8, 97, 61).front(), {}, true);
+    EXPECT_EQ(culling.counts().draws, 0u);
+    EXPECT_EQ(drawing.readIds(), std::vector<uint32_t>(97 * 61, kNoDrawable))
+        << "no candidates, nothing drawn";
     culling.drawFrame(city.path(8, 97, 61).front());
     EXPECT_EQ(DepthCheck(drawing).compare(&culling).false_pixels, 0u) << "all may be drawn again";
   }

@@ -190,6 +190,12 @@ TEST(VulkanQueries, AnswersOutliveTheirCommandBuffers) {
     for (int i = 0; i < 200; ++i) backend.submit({}, both);
     for (QueryId id = first; id < first + 2 * 201; ++id) EXPECT_EQ(backend.visible(id), id % 2 == 0);
     EXPECT_TRUE(backend.arrived(first));
+    EXPECT_GE(drawing.ring().size(), 64u);
+    const uint64_t waits = drawing.ring().waits();
+    drawing.ring().drain();
+    for (QueryId id = first; id < first + 2 * 201; ++id) EXPECT_TRUE(backend.arrived(id));
+    EXPECT_TRUE(backend.visible(first));
+    EXPECT_EQ(drawing.ring().waits(), waits) << "what has arrived is not waited for";
     if (frame > 0) {
       EXPECT_TRUE(backend.visible(first - 2 * 201)) << "of the frame before";
     }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/bake/bake_page.h"
+#include "core/walk/walk_page.h"
 #include "tests/output/example_pvs.h"
 #include "tests/support/chromium.h"
 #include "tests/support/example_page.h"
@@ -154,6 +155,55 @@ TEST_F(HtmlInBrowser, ShowsABake) {
     EXPECT_EQ(page["scroll_width"], width);
     EXPECT_EQ(page["legends"], (json{2, 2, 2, 2, 2, 2})) << "random and border: reverse found nothing";
     for (const json& colors : page["colors"]) EXPECT_GE(colors, 3);
+  }
+}
+
+/// The page of a walk: stacked areas keep their sum, bars stay in their row.
+TEST_F(HtmlInBrowser, ShowsAWalk) {
+  WalkReport report;
+  report.scene.name = "city.glb";
+  report.width = report.height = 100;
+  report.gpu_times = true;
+  report.frames.cameras.resize(500);
+  report.frames.cuts = {250};
+  for (const char* name :
+       {"none", "vfc", "stop-and-wait", "chc", "chc++", "opti-chc++", "late", "hiz", "pvs"}) {
+    MethodReplay m;
+    m.name = name;
+    for (uint32_t i = 0; i < 500; ++i) {
+      m.times.push_back({.frame = 1 + i % 7 * 0.5,
+                         .cpu = {0.1, 0.2, 0.3, 0.4, 0.5},
+                         .gpu = {1, 2, 0, 0, 0.25},
+                         .gpu_frame = 3.25});
+      m.counts.push_back({.submits = 3, .objects = 10 + i, .triangles = 1000 + i, .queries = i % 5});
+      m.checks.push_back({i % 50 == 0 ? 3u : 0u, 0, 3, 1, 8, 800});
+    }
+    report.replay.methods.push_back(m);
+  }
+  report.replay.traced = {{.frame = 0, .milliseconds = 1, .drawables = 8, .triangles = 90}};
+  for (const int width : {390, 1280}) {
+    std::string html = walkPage(report, {}, "sightline walk").html();
+    html.insert(html.rfind("</body>"), R"(<script>
+      const stacked = document.querySelector('figure[data-stacked]');
+      const chart = Chart.getChart(stacked.querySelector('canvas'));
+      const bars = Array.from(document.querySelectorAll('.spans .bar'), (bar) => Array.from(bar.children, (i) => {
+        const box = i.getBoundingClientRect(), row = bar.getBoundingClientRect();
+        return [(box.left - row.left) / row.width, (box.right - row.left) / row.width];
+      }));
+      window.said = {top: chart.scales.y.max, parts: chart.data.datasets.map((set) => set.label), bars};
+    </script>)");
+    const json page = measure(html, width);
+    EXPECT_EQ(page["wrong"], json::array());
+    EXPECT_EQ(page["scroll_width"], width);
+    for (const json& colors : page["colors"]) EXPECT_GE(colors, 3);
+    const json& said = page["said"];
+    EXPECT_GE(said["top"], 3.25) << "the parts' sum";
+    EXPECT_LE(said["top"], 4);
+    EXPECT_EQ(said["parts"], (json{"draw", "query", "rest"}));
+    ASSERT_EQ(said["bars"].size(), 2u);
+    EXPECT_NEAR(said["bars"][1][1][0].get<double>(), 1 / 3.25, 0.01) << "query begins where draw ends";
+    EXPECT_NEAR(said["bars"][1][2][1].get<double>(), 1, 0.01);
+    EXPECT_NEAR(said["bars"][0][4][1].get<double>(), 1.5 / 3.25, 0.01);
   }
 }
 

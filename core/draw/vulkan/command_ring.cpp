@@ -137,8 +137,10 @@ void CommandRing::submit(Entry& entry) {
 bool CommandRing::arrived(Entry& entry, uint64_t serial, Answers& answers, uint32_t query) {
   if (answers[query] >= 0 || entry.serial != serial) return true;  // who was taken anew has left its answers
   uint32_t samples = 0;
+  const double start = now();  // some drivers wait here, though asked not to
   const VkResult code = context_.api().vkGetQueryPoolResults(context_.device(), entry.queries.get(), query, 1,
                                                              sizeof samples, &samples, sizeof samples, 0);
+  cpu_.wait += now() - start;
   if (code == VK_NOT_READY) return false;
   checkVk(code, "vkGetQueryPoolResults");
   answers[query] = samples > 0;

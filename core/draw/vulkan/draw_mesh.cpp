@@ -41,8 +41,8 @@ DrawMesh::DrawMesh(const VulkanContext& context, const Scene& scene, const Drawa
         "{} triangles of the scene and of lists are too many to draw, {} at most; take fewer cells",
         slots.size(), (uint64_t(1) << 32) / 3));
   }
-  positions_ = context.buffer(scene.vertexCount() * 12, "vertices of the scene");
-  indices_ = context.buffer(slots.size() * 12, "triangles of the scene");
+  positions_ = context.buffer(scene.vertexCount() * 12, {"vertices of the scene", "a smaller scene"});
+  indices_ = context.buffer(slots.size() * 12, {"triangles of the scene", "a smaller scene"});
   VulkanUpload upload(context);
   if (scene.hasInstances()) {
     std::vector<glm::vec3> positions(scene.vertexCount());
@@ -64,7 +64,7 @@ DrawMesh::DrawMesh(const VulkanContext& context, const Scene& scene, const Drawa
   has_sides_ = features.sides;
   if (features.masks || features.sides) {
     surfaces = packSurfaces(scene.surfaces, slots);
-    surfaces_ = context.buffer(surfaces.size() * 4, "surfaces of the scene");
+    surfaces_ = context.buffer(surfaces.size() * 4, {"surfaces of the scene", "a smaller scene"});
     upload.write(surfaces_, surfaces.data(), surfaces.size() * 4);
   }
   upload.finish();

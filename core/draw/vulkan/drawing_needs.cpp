@@ -10,6 +10,8 @@ VulkanNeeds drawingNeeds() {
   needs.shaders = shaderCode;
   needs.features = {kAddresses, kScalarLayout, kInt64, kFloat64, kMultiDraw, kFirstInstance, kQueryReset};
   needs.welcome = {kDrawCount, kFragmentStores, kIndependentBlend, kMeshShaders};
+  needs.none =
+      "no Vulkan device found: install a GPU's driver, or mesa-vulkan-drivers 25 or later for the processor";
   needs.queue = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
   return needs;
 }

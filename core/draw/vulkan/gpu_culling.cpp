@@ -131,7 +131,7 @@ void GpuCulling::between(VkCommandBuffer commands) const {
       VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
 }
 
-void GpuCulling::prepare(VkCommandBuffer commands, std::span<const uint32_t> candidates, bool restricted,
+void GpuCulling::prepare(VkCommandBuffer commands, const std::span<const uint32_t>* candidates,
                          bool changed) {
   const VulkanContext& context = drawing_.context();
   const uint64_t texels = levelStart(drawing_.camera().size.x, drawing_.camera().size.y,
@@ -143,7 +143,7 @@ void GpuCulling::prepare(VkCommandBuffer commands, std::span<const uint32_t> can
     pyramid_texels_ = texels;
   }
   numbers_.pyramid = pyramid_.address();
-  numbers_.candidates = restricted ? candidates_.address() : 0;
+  numbers_.candidates = candidates != nullptr ? candidates_.address() : 0;
   drawing_.barrier(commands, kShaderStages | VK_PIPELINE_STAGE_TRANSFER_BIT,
                    VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
                    VK_ACCESS_TRANSFER_WRITE_BIT);
@@ -151,12 +151,12 @@ void GpuCulling::prepare(VkCommandBuffer commands, std::span<const uint32_t> can
   context.api().vkCmdFillBuffer(commands, heads_.get(), 0, kAll * kHeadWords * 4, 0);
   if (forget_) context.api().vkCmdFillBuffer(commands, states_.get(), 0, VK_WHOLE_SIZE, 0);
   forget_ = false;
-  if (restricted && (changed || !restricted_)) {
+  if (candidates != nullptr && (changed || !restricted_)) {
     std::vector<uint32_t> bits(drawing_.mesh().drawables().list.size() / 32 + 1);
-    for (const uint32_t drawable : candidates) bits[drawable / 32] |= 1u << drawable % 32;
+    for (const uint32_t drawable : *candidates) bits[drawable / 32] |= 1u << drawable % 32;
     updateBuffer(context, commands, candidates_, bits.data(), bits.size() * 4);
   }
-  restricted_ = restricted;
+  restricted_ = candidates != nullptr;
   orderBlended(commands);
   drawing_.barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, kShaderStages,
                    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
@@ -288,13 +288,17 @@ void GpuCulling::drawLate(CommandRing::Entry& entry) {
 }
 
 void GpuCulling::drawFrame(const Camera& camera) {
-  drawFrame(camera, {}, false);
+  drawAmong(camera, nullptr, false);
 }
 
 void GpuCulling::drawFrame(const Camera& camera, std::span<const uint32_t> candidates, bool changed) {
+  drawAmong(camera, &candidates, changed);
+}
+
+void GpuCulling::drawAmong(const Camera& camera, const std::span<const uint32_t>* candidates, bool changed) {
   drawing_.beginFrame(camera);
   CommandRing::Entry& entry = drawing_.open(0, 0, kHeadBytes);
-  prepare(entry.commands, candidates, candidates.data() != nullptr, changed);
+  prepare(entry.commands, candidates, changed);
   const Range opaque = range(AlphaKind::opaque);
   test(entry.commands, opaque, kEarly, kTestBefore);
   between(entry.commands);

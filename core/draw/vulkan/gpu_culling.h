@@ -37,9 +37,10 @@ class GpuCulling {
   GpuCulling& operator=(const GpuCulling&) = delete;
   ~GpuCulling();
 
-  /// Draws a frame. candidates: drawables that may be drawn, in any order; nothing: all may. changed: they
-  /// are other than in the last frame (so that a set is copied when its cell is entered, not in each frame).
+  /// Draws a frame.
   void drawFrame(const Camera& camera);
+  /// Draws a frame of some drawables only, in any order; perhaps none. changed: they are other than in the
+  /// last such frame (so that a set is copied when its cell is entered, not in each frame).
   void drawFrame(const Camera& camera, std::span<const uint32_t> candidates, bool changed);
   /// As if just made.
   void forget() { forget_ = true; }
@@ -66,7 +67,9 @@ class GpuCulling {
   VkDeviceAddress address() const { return launch_.address(); }
   void createBuffers();
   uint32_t opaqueKind() const;  ///< of write_draws.comp
-  void prepare(VkCommandBuffer commands, std::span<const uint32_t> candidates, bool restricted, bool changed);
+  void drawAmong(const Camera& camera, const std::span<const uint32_t>* candidates, bool changed);
+  /// candidates: nothing where all may be drawn.
+  void prepare(VkCommandBuffer commands, const std::span<const uint32_t>* candidates, bool changed);
   void orderBlended(VkCommandBuffer commands);
   void test(VkCommandBuffer commands, Range range, uint32_t list, uint32_t test);
   void writeDraws(VkCommandBuffer commands, Range range, uint32_t list, uint32_t kind);
