@@ -9,7 +9,7 @@ set(pvs_headers base/error.h base/named_triangles.h shared/language.h shared/typ
     pvs/method.h pvs/order.h pvs/bake_params.h pvs/cell_stats.h pvs/cell_pvs.h pvs/pvs_file.h pvs/missing_bound.h pvs/cell_summary.h
     pvs/visible_from.h)
 set(sightline_headers base/extents.h scene/find_objects.h shared/placement.h shared/box.h scene/scene.h scene/surfaces.h shared/surface.h shared/triangle.h
-    shared/two_float.h formats/load_scene.h formats/cells_file.h trace/device_info.h
+    shared/two_float.h formats/load_scene.h formats/cells_file.h trace/device_info.h trace/seen_glass.h
     device/device_options.h device/registry/device_names.h gvs/bake_progress.h gvs/bake_trace.h gvs/leaks.h bake/bake_events.h
     bake/require_scene.h api/session.h api/bake.h)
 set(all_headers ${pvs_headers} ${sightline_headers})
@@ -47,7 +47,7 @@ endfunction()
 sl_library(pvs HEADERS ${pvs_headers} TARGETS sightline_base sightline_io sightline_cell sightline_pvs
            PRIVATE fmt::fmt PkgConfig::xxhash PkgConfig::zstd)
 
-set(objects sightline_bvh sightline_scene sightline_formats sightline_sampling sightline_trace sightline_device
+set(objects sightline_bvh sightline_scene sightline_path sightline_formats sightline_sampling sightline_trace sightline_device
     sightline_device_gpu sightline_device_cpu sightline_device_naive sightline_device_embree sightline_device_registry sightline_page
     report_page_parts sightline_gvs sightline_bake sightline_api)
 set(packages fmt::fmt PkgConfig::draco PkgConfig::xxhash TBB::tbb PkgConfig::webp PNG::PNG Threads::Threads

@@ -87,4 +87,9 @@ void Session::traceRays(std::span<const Ray> rays, std::span<Hit> hits) {
   parts_->tracer().traceRays(rays, hits);
 }
 
+std::vector<SeenThrough> Session::traceGlass(std::span<const Ray> rays, std::span<const Hit> hits) {
+  Tracer& tracer = parts_->tracer();
+  return tracer.hasGlass() ? tracer.traceGlass(rays, hits) : std::vector<SeenThrough>();
+}
+
 }  // namespace sightline

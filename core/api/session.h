@@ -10,6 +10,7 @@
 #include "core/scene/scene.h"
 #include "core/shared/types.h"
 #include "core/trace/device_info.h"
+#include "core/trace/seen_glass.h"
 
 namespace sightline {
 
@@ -61,6 +62,10 @@ class Session {
   /// Nearest hits of rays: hits.size() == rays.size(), kNoTriangle where a ray meets nothing. Opens the
   /// session. Throws Error.
   void traceRays(std::span<const Ray> rays, std::span<Hit> hits);
+
+  /// The glass that each ray meets no farther away than its hit (hits: as traceRays gave them): ascending by
+  /// ray and triangle, each once. Nothing where the scene has none. Opens the session. Throws Error.
+  std::vector<SeenThrough> traceGlass(std::span<const Ray> rays, std::span<const Hit> hits);
 
   /// What it is made of, for the library itself.
   SessionParts& parts() { return *parts_; }

@@ -166,6 +166,31 @@ ReportTable cellsTable(const BakeReport& report) {
   return table;
 }
 
+/// What of a scene and of a bake costs something, and was on.
+std::vector<ReportFact> featureFacts(const BakeReport& report) {
+  const SceneSummary& scene = report.scene;
+  std::vector<ReportFact> facts;
+  const auto add = [&](uint64_t count, const char* name, const char* of) {
+    if (count != 0) facts.push_back({name, fmt::format("{} {}", count, of)});
+  };
+  add(scene.instances, "instances", "places of meshes that are stored once");
+  add(scene.surfaces.masked, "alpha masks", "triangles with holes");
+  add(scene.surfaces.glass, "glass", "triangles that are seen, and seen through");
+  add(scene.surfaces.front_only, "sides", "triangles that are not there from behind");
+  add(report.see_through.size(), "hiding nothing", "objects that are seen through");
+  add(report.doors.size(), "doors", "objects that open: two sets a cell");
+  if (report.params.smallest_hole > 0) {
+    facts.push_back(
+        {"smallest hole", fmt::format("{:.6g}: narrower gaps count as closed", report.params.smallest_hole)});
+  }
+  if (scene.offset != glm::dvec3(0.0)) {
+    facts.push_back({"offset", fmt::format("({:.0f}, {:.0f}, {:.0f}), taken off all coordinates",
+                                           scene.offset.x, scene.offset.y, scene.offset.z)});
+  }
+  if (facts.empty()) facts.push_back({"none", "all triangles are opaque, from both sides"});
+  return facts;
+}
+
 std::vector<ReportFact> sceneFacts(const BakeReport& report) {
   const SceneSummary& scene = report.scene;
   std::vector<ReportFact> facts = {{"triangles", std::to_string(scene.triangles)},
@@ -251,7 +276,8 @@ void addPictures(HtmlReport& html, const std::vector<ReportPicture>& pictures) {
   html.section("Pictures");
   html.text(
       "From outside: triangles in the set green, the view cell orange. From inside: red what is seen but not "
-      "in the set.");
+      "in the set. Through holes and glass one sees what is behind; glass tints it, bluish. Doors that are "
+      "open are drawn as glass.");
   html.pictures(pictures);
 }
 
@@ -311,6 +337,8 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
   html.facts(parameterFacts(report.params));
   html.section("Scene");
   html.facts(sceneFacts(report));
+  html.section("Features that were on");
+  html.facts(featureFacts(report));
   html.repeat({.command = page.command,
                .seed = std::to_string(report.params.seed),
                .device = report.device ? report.device->id + ", " + report.device->name : report.baked_on,

@@ -24,7 +24,9 @@
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
 #include "core/picture/cell_pictures.h"
+#include "core/pvs/door_state.h"
 #include "core/scene/find_objects.h"
+#include "core/scene/seen_through.h"
 #include "core/trace/cpu_tracer.h"
 
 namespace sightline {
@@ -174,25 +176,41 @@ std::vector<uint8_t> readPicture(const std::filesystem::path& file) {
   return {bytes.view().begin(), bytes.view().end()};
 }
 
-/// Draws the pictures, and adds them to the page if one is written. Returns the exit code.
-int drawCells(const BakeOptions& options, Session& session, BakePage& page) {
+/// Draws the cells, and adds them to the page if one is written. state: after the names of cells.
+void drawCells(const BakeOptions& options, Session& session, const PvsFile& pvs, const std::string& state,
+               const StopSignal& stop, BakePage& page) {
   const TraceRays trace = nearestHits(session);
-  const PvsFile pvs = loadPvs(options.out);
-  const StopSignal stop;
+  const TraceGlass glass = [&](std::span<const Ray> rays, std::span<const Hit> hits) {
+    return session.traceGlass(rays, hits);
+  };
   for (uint32_t i = 0; i < pvs.cells.size(); ++i) {
     if (stop.exitCode() != 0) {
       say(fmt::format("stopped: pictures of {} of {} cells are drawn", i, pvs.cells.size()));
       break;
     }
-    const double missing = saveCellPictures(trace, session.scene(), pvs.cells[i], i, options.pictures);
-    const std::string& name = pvs.cells[i].cell.name;
-    const std::string file = (options.pictures / pictureName(name, i)).string();
+    CellPvs cell = pvs.cells[i];
+    const std::string said = cell.cell.name + (state.empty() ? "" : ", doors " + state);
+    if (!state.empty()) cell.cell.name += "-" + state;
+    const double missing = saveCellPictures(trace, session.scene(), cell, i, options.pictures, glass);
+    const std::string file = (options.pictures / pictureName(cell.cell.name, i)).string();
     say(fmt::format("{}: {:.2g} of the pixels from inside show a missing triangle", file, missing));
     if (options.html.empty()) continue;
-    page.pictures.push_back({readPicture(file + "-outside.png"), name + " from outside"});
+    page.pictures.push_back({readPicture(file + "-outside.png"), said + " from outside"});
     page.pictures.push_back({readPicture(file + "-inside.png"),
-                             fmt::format("{} from inside, {:.2g} of the pixels missing", name, missing)});
+                             fmt::format("{} from inside, {:.2g} of the pixels missing", said, missing)});
   }
+}
+
+/// Draws the pictures; where there are doors, of both their states. Returns the exit code.
+int drawPictures(const BakeOptions& options, Session& session, BakePage& page) {
+  const PvsFile pvs = loadPvs(options.out);
+  const StopSignal stop;
+  const bool doors = !pvs.doors.empty();
+  drawCells(options, session, inState(pvs, DoorState::kClosed, options.out), doors ? "closed" : "", stop,
+            page);
+  if (!doors || stop.exitCode() != 0) return stop.exitCode();
+  Session open(seenThrough(session.scene(), pvs.doors), session.options());
+  drawCells(options, open, inState(pvs, DoorState::kOpen, options.out), "open", stop, page);
   return stop.exitCode();
 }
 
@@ -295,7 +313,7 @@ void runBake(const BakeOptions& options) {
   Steps steps;
   if (!options.report.empty()) steps.run([&] { outputs.save(reportJson(report), options.report); });
   if (exit_code == 0 && !options.pictures.empty()) {
-    steps.run([&] { exit_code = drawCells(options, session, page); });
+    steps.run([&] { exit_code = drawPictures(options, session, page); });
   }
   writePage(options, report, outputs, page, steps);
   steps.end();

@@ -60,12 +60,15 @@ void draw(const PictureCommand& command) {
   const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
     session.traceRays(rays, hits);
   };
+  const TraceGlass glass = [&](std::span<const Ray> rays, std::span<const Hit> hits) {
+    return session.traceGlass(rays, hits);
+  };
 
   const bool inside = command.view == "inside";
   PictureOptions options = command.options;
   options.cut_height -= float(scene.offset.y);
-  const Picture picture =
-      inside ? renderInside(trace, scene, cell, options) : renderOutside(trace, scene, cell, options);
+  const Picture picture = inside ? renderInside(trace, scene, cell, options, glass)
+                                 : renderOutside(trace, scene, cell, options, glass);
   savePng(picture.image, command.output);
   fmt::print("{}: {} from {}, {} of {} triangles\n", command.output.string(), cell.cell.name, command.view,
              cell.triangles.size(), scene.triangleCount());

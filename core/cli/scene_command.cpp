@@ -29,6 +29,7 @@ struct SceneArguments {
   uint64_t triangles = 2'000'000;
   uint64_t seed = 1;
   uint32_t kinds = 0;  ///< 0: nothing repeats
+  bool alpha = false;
   bool overwrite = false;
 };
 
@@ -37,13 +38,14 @@ void run(const SceneArguments& arguments) {
   requireSeparate(files, {});
   for (const std::filesystem::path& file : files) requireNew(file, arguments.overwrite);
   const TextOutputs outputs({files.data(), 1});
-  const auto& [name, output, cells_file, walk_file, frames, triangles, seed, kinds, overwrite] = arguments;
+  const auto& [name, output, cells_file, walk_file, frames, triangles, seed, kinds, alpha, overwrite] =
+      arguments;
   const std::vector<ViewCell> cells =
       kinds > 0 ? generateRepeatedCells(name, triangles, seed, kinds) : generateCells(name, triangles, seed);
   const CameraPath walk =
       walk_file.empty() ? CameraPath{} : generateWalk(name, triangles, seed, frames, kinds);
-  const Scene scene =
-      kinds > 0 ? generateRepeated(name, triangles, seed, kinds) : generateScene(name, triangles, seed);
+  const Scene scene = kinds > 0 ? generateRepeated(name, triangles, seed, kinds)
+                                : generateScene(name, triangles, seed, alpha);
   if (isStandardOutput(arguments.output)) {
     writeObj(scene, "standard output", [&](std::string_view piece) { outputs.write(piece); });
   } else {
@@ -54,6 +56,10 @@ void run(const SceneArguments& arguments) {
   fmt::print("{}: {} triangles, {} vertices, {}, {:.0f} x {:.0f} x {:.0f} m\n", arguments.output,
              scene.triangleCount(), scene.vertexCount(), counted(scene.objects.size(), "object"), size.x,
              size.y, size.z);
+  if (!scene.surfaces.empty()) {
+    const SurfaceCounts counts = countSurfaces(scene.surfaces);
+    fmt::print("{}: {} triangles have holes, {} are glass\n", arguments.output, counts.masked, counts.glass);
+  }
   if (scene.hasInstances()) {
     fmt::print("{}: {} triangles are stored, in {} of {} different ones\n", arguments.output,
                scene.triangles.size(), counted(scene.instances.size(), "instance"), scene.meshes.size());
@@ -107,11 +113,15 @@ void addSceneCommand(CLI::App& app) {
   command->add_option("--seed", arguments->seed, "Another seed, another scene of the kind")
       ->transform(wholeNumber())
       ->capture_default_str();
+  CLI::Option* const alpha = command->add_flag(
+      "--alpha", arguments->alpha,
+      "City and bistro: leaves with holes, and panes and bottles of glass, as a .glb holds them");
   command
       ->add_option("--kinds", arguments->kinds,
                    "City and plant: of so many different blocks or bays, which repeat. They are stored once "
                    "(in .glb); all count as triangles")
-      ->transform(wholeNumber());
+      ->transform(wholeNumber())
+      ->excludes(alpha);
   command
       ->add_option("--cells", arguments->cells,
                    "Also write ten view cells in the scene's free space to this .json file")

@@ -25,6 +25,15 @@ Json objectsJson(const Scene& scene, const CellPvs& cell) {
   return objects;
 }
 
+void copySurface(const Surfaces& from, uint32_t triangle, Surfaces& to) {
+  uint32_t word = from.of(triangle);
+  if ((word & kSurfaceMasked) != 0) {
+    to.masked.push_back(from.masked[word & kSurfaceIndex]);
+    word = (word & ~kSurfaceIndex) | uint32_t(to.masked.size() - 1);
+  }
+  to.words.push_back(word);
+}
+
 /// Copies the object's visible triangles, from `id` on; new_index: of each vertex, or kNoTriangle.
 void copyObject(const Scene& scene, const SceneObject& object, const CellPvs& cell, size_t& id,
                 std::vector<uint32_t>& new_index, Scene& visible) {
@@ -43,9 +52,12 @@ void copyObject(const Scene& scene, const SceneObject& object, const CellPvs& ce
       corners[corner] = index;
     }
     visible.triangles.push_back(corners);
+    if (!scene.surfaces.empty()) copySurface(scene.surfaces, triangle, visible.surfaces);
   }
   const auto count = uint32_t(visible.triangles.size()) - first;
-  if (count != 0) visible.objects.push_back({object.name, first, count});
+  if (count == 0) return;
+  visible.objects.push_back({object.name, first, count});
+  visible.objects.back().single_sided = object.single_sided;
 }
 
 }  // namespace
@@ -74,6 +86,8 @@ Scene visibleScene(const Scene& scene, const CellPvs& cell) {
   }
   Scene visible;
   visible.offset = scene.offset;
+  visible.surfaces.masks = scene.surfaces.masks;
+  visible.surfaces.texels = scene.surfaces.texels;
   std::vector<uint32_t> new_index(scene.vertexCount(), kNoTriangle);
   size_t id = 0;
   for (const SceneObject& object : scene.objects) copyObject(scene, object, cell, id, new_index, visible);

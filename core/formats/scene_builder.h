@@ -83,7 +83,11 @@ class SceneBuilder {
   void countAlpha(uint64_t triangles) { scene_.alpha_triangles += triangles; }
   void countOpaqueMasks(uint64_t triangles) { scene_.opaque_mask_triangles += triangles; }
   void countGlass(uint64_t triangles) { scene_.glass_triangles += triangles; }
-  void countSingleSided(uint64_t triangles) { scene_.single_sided_triangles += triangles; }
+  /// Of the object that has begun.
+  void countSingleSided(uint64_t triangles) {
+    scene_.single_sided_triangles += triangles;
+    object_.single_sided = true;
+  }
   void countHiddenNodes(uint64_t nodes) { scene_.hidden_nodes += nodes; }
   /// What it names of the file is cleaned (cleanName): reports take UTF-8 only.
   void warn(std::string_view line) { scene_.warnings.push_back(cleanName(line)); }

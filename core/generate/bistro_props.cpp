@@ -109,6 +109,7 @@ void makeCup(MeshBuilder& mesh, uint32_t level) {
 void makeBottle(MeshBuilder& mesh, uint32_t level) {
   const uint32_t own = after(3, level);
   if (own == 0) return;
+  mesh.use(Matter::kPane);
   const uint32_t sides = propSides(own), steps = 1 + own / 2;
   std::vector<LathePoint> bottle{{0, 0.004f}, {0.034f, 0.002f}, {0.037f, 0.01f}, {0.037f, 0.18f}};
   addRound(bottle, 0.037f, 0.19f, 0.014f, 0.24f, steps);
@@ -181,11 +182,14 @@ void makePottedPlant(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
                               {0, 0.4f}};
   mesh.lathe(pot, propSides(own, 64));
   const uint32_t leaves = 6 + own * (own + 5), pieces = std::min(12u, 1 + own / 2);
+  // With holes, a leaf becomes a frond: wide, and mostly air.
+  const float widen = mesh.alpha() ? 5.0f : 1.0f;
+  mesh.use(Matter::kLeaf);
   for (uint32_t k = 0; k < leaves; ++k) {
     // A leaf goes up and out, bends down, and narrows to its tip.
     const Turn t = turn(random.unit());
     const float out = size * random.uniform(0.15f, 0.65f), high = size * random.uniform(0.4f, 1.2f);
-    const float droop = random.uniform(0.2f, 0.9f), width = size * random.uniform(0.015f, 0.035f);
+    const float droop = random.uniform(0.2f, 0.9f), width = size * random.uniform(0.015f, 0.035f) * widen;
     const float root_z = 0.15f * size * random.uniform(-1, 1), root_x = 0.15f * size * random.uniform(-1, 1);
     const glm::vec3 root(root_x, 0.4f, root_z);
     const glm::vec3 away(t.cos, 0, t.sin), side(-t.sin, 0, t.cos);
@@ -193,7 +197,8 @@ void makePottedPlant(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
     mesh.sheet(1, pieces, false, [&](uint32_t i, uint32_t j) {
       const float s = float(j) / float(pieces);
       const glm::vec3 spine = root + away * (out * s) + glm::vec3(0, high * (s - 0.5f * droop * s * s), 0);
-      const float half = width * (0.35f + 1.3f * s * (1 - s)) * (1 - 0.9f * s * s);
+      const float half =
+          mesh.alpha() ? width * (1 - 0.4f * s) : width * (0.35f + 1.3f * s * (1 - s)) * (1 - 0.9f * s * s);
       return spine + side * (i == 0 ? -half : half) + glm::vec3(0, i == 0 ? -half * fold : half * fold, 0);
     });
   }

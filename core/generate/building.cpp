@@ -70,7 +70,9 @@ void recessedPane(MeshBuilder& mesh, const uint32_t (&corners)[4], Cell hole, fl
     mesh.quad(corners[i], corners[j], rim + j, rim + i);
     mesh.quad(rim + i, rim + j, rim + 4 + j, rim + 4 + i);
   }
+  mesh.use(Matter::kPane);
   mesh.quad(rim + 4, rim + 5, rim + 6, rim + 7);
+  mesh.use(Matter::kSolid);
 }
 
 void windowFrame(MeshBuilder& mesh, Cell h, float recess) {
@@ -183,6 +185,15 @@ void facade(MeshBuilder& mesh, const Facade& f, const Style& style, uint32_t lev
   }
 }
 
+/// What shows through panes: the floors, clear of them.
+void slabs(MeshBuilder& mesh, float w, float d, float floor_height, uint32_t floors, const Style& style) {
+  const float in = style.recess + 0.05f;
+  for (uint32_t j = 0; j < floors; ++j) {
+    const float y = floor_height * float(j) + 0.02f;
+    mesh.quad({in, y, d - in}, {w - in, y, d - in}, {w - in, y, in}, {in, y, in});
+  }
+}
+
 /// Four facades about [0, w] x [0, d] from y = 0 up.
 void walls(MeshBuilder& mesh, const BuildingSpec& spec, float w, float d, uint32_t floors, bool ground_floor,
            const Style& style, uint32_t level) {
@@ -196,6 +207,9 @@ void walls(MeshBuilder& mesh, const BuildingSpec& spec, float w, float d, uint32
            style, level);
   }
   mesh.frame = base;
+  if (mesh.alpha() && detailsAt(level, true, style).bands) {
+    slabs(mesh, w, d, spec.floor_height, floors, style);
+  }
 }
 
 void flatRoof(MeshBuilder& mesh, float w, float d, float y, uint32_t level) {

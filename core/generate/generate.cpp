@@ -72,8 +72,12 @@ const std::vector<GeneratedSceneInfo>& generatedScenes() {
   return infos;
 }
 
-Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed) {
-  return assembleScene(find(name, triangles).parts(triangles, seed), triangles, seed);
+Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed, bool alpha) {
+  const Generator& generator = find(name, triangles);
+  if (alpha && name != "city" && name != "bistro") {
+    throw Error("the scene '" + name + "' has neither leaves nor panes: city and bistro have", kExitUsage);
+  }
+  return assembleScene(generator.parts(triangles, seed), triangles, seed, alpha);
 }
 
 bool canRepeat(const std::string& name) {

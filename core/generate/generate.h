@@ -32,7 +32,10 @@ const std::vector<GeneratedSceneInfo>& generatedScenes();
 /// function of libm whose last digit differs by platform). No triangle is degenerate; each building, prop or
 /// pipe is an object of its own, with its vertices shared. Throws Error with exit code 2 for an unknown name
 /// or a count out of kMinGeneratedTriangles..kMaxGeneratedTriangles.
-Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed);
+/// alpha: "city" and "bistro" have leaves with holes (Surfaces), and windows and bottles of glass, each as
+/// objects of their own; through windows one sees the floors of a house. Cells are the same. Throws the same
+/// for other scenes.
+Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed, bool alpha = false);
 
 /// Generates "city" or "plant" of at most so many kinds of modules (blocks of houses; bays of a plant, half
 /// of them mirrored, and aisles), 1 .. kMaxKinds, each an instance: the count is of all, whatever is stored

@@ -65,7 +65,7 @@ std::string numbered(const char* what, uint32_t i, uint32_t j, uint32_t k) {
   return std::string(what) + "-" + std::to_string(i) + "-" + std::to_string(j) + "-" + std::to_string(k);
 }
 
-void addGround(std::vector<ScenePart>& parts, const CityLayout& city) {
+void addRoad(std::vector<ScenePart>& parts, const CityLayout& city) {
   const Axis x = city.x, z = city.z;
   parts.push_back({"road",
                    [x, z](MeshBuilder& mesh, uint32_t level) {
@@ -75,19 +75,27 @@ void addGround(std::vector<ScenePart>& parts, const CityLayout& city) {
                      mesh.patch({x.start() - margin, 0, z.end() + margin}, {w, 0, 0}, {0, 0, -d}, n, n);
                    },
                    16});
+}
+
+ScenePart pavement(const std::string& name, glm::vec3 low, glm::vec3 high) {
+  return {name,
+          [low, high](MeshBuilder& mesh, uint32_t level) {
+            mesh.box(low, high, kNoLowY | kNoHighY);
+            const glm::vec3 size = high - low;
+            const uint32_t nu = std::max(1u, level * uint32_t(size.x / 8));
+            const uint32_t nv = std::max(1u, level * uint32_t(size.z / 8));
+            mesh.patch({low.x, high.y, high.z}, {size.x, 0, 0}, {0, 0, -size.z}, nu, nv);
+          },
+          12};
+}
+
+void addPavements(std::vector<ScenePart>& parts, const CityLayout& city) {
+  const Axis &x = city.x, &z = city.z;
   for (uint32_t i = 0; i < x.blocks(); ++i) {
     for (uint32_t j = 0; j < z.blocks(); ++j) {
-      const glm::vec3 low(x.block_low(i), 0, z.block_low(j)),
-          high(x.block_high(i), kCityKerb, z.block_high(j));
-      parts.push_back({"pavement-" + std::to_string(i) + "-" + std::to_string(j),
-                       [low, high](MeshBuilder& mesh, uint32_t level) {
-                         mesh.box(low, high, kNoLowY | kNoHighY);
-                         const glm::vec3 size = high - low;
-                         const uint32_t nu = std::max(1u, level * uint32_t(size.x / 8));
-                         const uint32_t nv = std::max(1u, level * uint32_t(size.z / 8));
-                         mesh.patch({low.x, high.y, high.z}, {size.x, 0, 0}, {0, 0, -size.z}, nu, nv);
-                       },
-                       12});
+      parts.push_back(pavement("pavement-" + std::to_string(i) + "-" + std::to_string(j),
+                               {x.block_low(i), 0, z.block_low(j)},
+                               {x.block_high(i), kCityKerb, z.block_high(j)}));
     }
   }
 }
@@ -144,17 +152,91 @@ uint32_t propLevel(uint32_t level) {
   return level < 7 ? (level + 1) / 2 : level - 3;
 }
 
+using MakeProp = void (*)(MeshBuilder& mesh, uint64_t seed, uint32_t level);
+
+/// Takes what stands in the streets. street: a part of the names.
+class StreetTaker {
+ public:
+  virtual ~StreetTaker() = default;
+  virtual void prop(const char* kind, const std::string& street, const Frame& frame, MakeProp make,
+                    uint64_t seed) = 0;
+  /// From a to a + across. avenue: wires of the same one have the same `across`.
+  virtual void wire(const std::string& street, uint32_t avenue, glm::vec3 a, glm::vec3 across) = 0;
+};
+
+/// Each a part of its own.
+class StreetParts : public StreetTaker {
+ public:
+  explicit StreetParts(std::vector<ScenePart>& parts) : parts_(parts) {}
+
+  void prop(const char* kind, const std::string& street, const Frame& frame, MakeProp make,
+            uint64_t seed) override {
+    parts_.push_back({kind + street + "-" + std::to_string(parts_.size()),
+                      [=](MeshBuilder& mesh, uint32_t level) {
+                        mesh.frame = frame;
+                        make(mesh, seed, propLevel(level));
+                      },
+                      kPropLevels});
+  }
+  void wire(const std::string& street, uint32_t, glm::vec3 a, glm::vec3 across) override {
+    parts_.push_back(
+        {"wire" + street + "-" + std::to_string(parts_.size()),
+         [=](MeshBuilder& mesh, uint32_t level) { makeWire(mesh, a, a + across, propLevel(level)); },
+         kPropLevels});
+  }
+
+ private:
+  std::vector<ScenePart>& parts_;
+};
+
+/// Modules by what sets them apart.
+class CityModules : public StreetTaker {
+ public:
+  CityModules(RepeatedScene& scene, uint32_t kinds) : scene_(scene), kinds_(kinds) {}
+
+  /// Adds a place of the module, whose parts make() makes, if it is new, in its own frame.
+  template <typename Make>
+  void place(const std::string& key, const std::string& name, const Frame& frame, Make&& make) {
+    const auto [entry, is_new] = made_.emplace(key, scene_.modules.size());
+    if (is_new) {
+      scene_.modules.emplace_back();
+      make(scene_.modules.back().parts);
+    }
+    scene_.modules[entry->second].places.push_back(
+        {name, {vec4(frame.x, 0), vec4(frame.y, 0), vec4(frame.z, 0), vec4(frame.origin, 0)}});
+  }
+
+  void prop(const char* kind, const std::string& street, const Frame& frame, MakeProp make,
+            uint64_t seed) override {
+    const uint64_t variety = seed % kinds_;
+    place(kind + std::to_string(variety), kind + street + "-" + std::to_string(count_++), frame,
+          [&](std::vector<ScenePart>& parts) {
+            parts.push_back(
+                {"", [=](MeshBuilder& mesh, uint32_t level) { make(mesh, variety, propLevel(level)); },
+                 kPropLevels});
+          });
+  }
+  void wire(const std::string& street, uint32_t avenue, glm::vec3 a, glm::vec3 across) override {
+    place("wire" + std::to_string(avenue), "wire" + street + "-" + std::to_string(count_++), Frame{}.at(a),
+          [&](std::vector<ScenePart>& parts) {
+            parts.push_back(
+                {"", [=](MeshBuilder& mesh, uint32_t level) { makeWire(mesh, {}, across, propLevel(level)); },
+                 kPropLevels});
+          });
+  }
+
+ private:
+  RepeatedScene& scene_;
+  const uint32_t kinds_;
+  uint64_t count_ = 0;  ///< names are different
+  std::map<std::string, size_t> made_;
+};
+
 /// One side of a street along a block: its frame stands on the kerb's edge, x points to the street's axis.
-void addStreetSide(std::vector<ScenePart>& parts, const Frame& kerb, float length, const std::string& name,
+void addStreetSide(StreetTaker& street, const Frame& kerb, float length, const std::string& name,
                    GeneratorRandom random) {
-  const auto add = [&](const char* kind, Frame frame, auto make) {
-    const uint64_t own = random.next();
-    parts.push_back({kind + name + "-" + std::to_string(parts.size()),
-                     [frame, own, make](MeshBuilder& mesh, uint32_t level) {
-                       mesh.frame = frame;
-                       make(mesh, own, propLevel(level));
-                     },
-                     kPropLevels});
+  const auto add = [&](const char* kind, const Frame& frame, MakeProp make) {
+    street.prop(kind, name, frame, make, random.next());
   };
   const float slot = 6.5f;
   for (float at = 4; at + 4 < length; at += slot) {
@@ -174,18 +256,14 @@ void addStreetSide(std::vector<ScenePart>& parts, const Frame& kerb, float lengt
   }
 }
 
-void addWires(std::vector<ScenePart>& parts, glm::vec3 start, glm::vec3 along, glm::vec3 across, float length,
-              const std::string& name, GeneratorRandom random) {
+void addWires(StreetTaker& street, uint32_t avenue, glm::vec3 start, glm::vec3 along, glm::vec3 across,
+              float length, const std::string& name, GeneratorRandom random) {
   for (float at = 12; at + 8 < length; at += 24) {
-    const glm::vec3 a = start + along * at + glm::vec3(0, random.uniform(8.5f, 9.5f), 0);
-    parts.push_back(
-        {"wire" + name + "-" + std::to_string(parts.size()),
-         [a, across](MeshBuilder& mesh, uint32_t level) { makeWire(mesh, a, a + across, propLevel(level)); },
-         kPropLevels});
+    street.wire(name, avenue, start + along * at + glm::vec3(0, random.uniform(8.5f, 9.5f), 0), across);
   }
 }
 
-void addStreets(std::vector<ScenePart>& parts, const CityLayout& city, uint64_t seed) {
+void addStreets(StreetTaker& street, const CityLayout& city, uint64_t seed) {
   const float reach = kPavement - 0.01f;  // wires go from wall to wall
   for (uint32_t i = 0; i <= city.x.blocks(); ++i) {
     for (uint32_t j = 0; j < city.z.blocks(); ++j) {
@@ -194,13 +272,13 @@ void addStreets(std::vector<ScenePart>& parts, const CityLayout& city, uint64_t 
       const float x0 = city.x.low[i], x1 = city.x.high[i];
       const uint64_t tag = uint64_t(i) * 65536 + j;
       if (i > 0) {
-        addStreetSide(parts, Frame{}.at({x0, 0, z0}), z1 - z0, name, {seed, 0x51de0, tag});
+        addStreetSide(street, Frame{}.at({x0, 0, z0}), z1 - z0, name, {seed, 0x51de0, tag});
       }
       if (i < city.x.blocks()) {
-        addStreetSide(parts, Frame{}.at({x1, 0, z1}, 0.5f), z1 - z0, name, {seed, 0x51de1, tag});
+        addStreetSide(street, Frame{}.at({x1, 0, z1}, 0.5f), z1 - z0, name, {seed, 0x51de1, tag});
       }
       if (i > 0 && i < city.x.blocks()) {
-        addWires(parts, {x0 - reach, 0, z0}, {0, 0, 1}, {x1 - x0 + 2 * reach, 0, 0}, z1 - z0, name,
+        addWires(street, i, {x0 - reach, 0, z0}, {0, 0, 1}, {x1 - x0 + 2 * reach, 0, 0}, z1 - z0, name,
                  {seed, 0x3172, tag});
       }
     }
@@ -211,10 +289,12 @@ void addStreets(std::vector<ScenePart>& parts, const CityLayout& city, uint64_t 
       const float x0 = city.x.block_low(i), x1 = city.x.block_high(i);
       const uint64_t tag = uint64_t(i) * 65536 + j;
       if (j > 0) {
-        addStreetSide(parts, Frame{}.at({x1, 0, city.z.low[j]}, -0.25f), x1 - x0, name, {seed, 0x51de2, tag});
+        addStreetSide(street, Frame{}.at({x1, 0, city.z.low[j]}, -0.25f), x1 - x0, name,
+                      {seed, 0x51de2, tag});
       }
       if (j < city.z.blocks()) {
-        addStreetSide(parts, Frame{}.at({x0, 0, city.z.high[j]}, 0.25f), x1 - x0, name, {seed, 0x51de3, tag});
+        addStreetSide(street, Frame{}.at({x0, 0, city.z.high[j]}, 0.25f), x1 - x0, name,
+                      {seed, 0x51de3, tag});
       }
     }
   }
@@ -225,38 +305,40 @@ void addStreets(std::vector<ScenePart>& parts, const CityLayout& city, uint64_t 
 std::vector<ScenePart> cityParts(uint64_t triangles, uint64_t seed) {
   const CityLayout city = drawCity(triangles, seed);
   std::vector<ScenePart> parts;
-  addGround(parts, city);
+  addRoad(parts, city);
+  addPavements(parts, city);
   for (uint32_t i = 0; i < city.x.blocks(); ++i) {
     for (uint32_t j = 0; j < city.z.blocks(); ++j) {
       addBlock(parts, blockAt(city, i, j), fromCenter(city, i, j), i, j,
                {seed, 0xb10c, uint64_t(i) * 65536 + j});
     }
   }
-  addStreets(parts, city, seed);
+  StreetParts streets(parts);
+  addStreets(streets, city, seed);
   return parts;
 }
 
 RepeatedScene repeatedCity(uint64_t triangles, uint64_t seed, uint32_t kinds) {
   const CityLayout city = drawCity(triangles, seed, true);
   RepeatedScene scene;
-  addGround(scene.parts, city);
-  addStreets(scene.parts, city, seed);
+  addRoad(scene.parts, city);
+  CityModules modules(scene, kinds);
+  addStreets(modules, city, seed);
   const BlockPlace first = blockAt(city, 0, 0);
   const BlockPlace local = {0, first.x1 - first.x0, 0, first.z1 - first.z0};
-  std::map<uint32_t, size_t> made;
+  const glm::vec3 high(local.x1 + 2 * kPavement, kCityKerb, local.z1 + 2 * kPavement);
   for (uint32_t i = 0; i < city.x.blocks(); ++i) {
     for (uint32_t j = 0; j < city.z.blocks(); ++j) {
       const uint32_t kind = GeneratorRandom(seed, 0x71d5, uint64_t(i) * 65536 + j).below(kinds);
-      const auto [entry, is_new] = made.emplace(kind, scene.modules.size());
-      if (is_new) {
-        scene.modules.emplace_back();
-        addBlock(scene.modules.back().parts, local, GeneratorRandom(seed, 0x71d6, kind).unit(), 0, 0,
-                 {seed, 0xb10c, kind});
-      }
       const BlockPlace at = blockAt(city, i, j);
-      scene.modules[entry->second].places.push_back(
-          {"block-" + std::to_string(i) + "-" + std::to_string(j),
-           {vec4(1, 0, 0, 0), vec4(0, 1, 0, 0), vec4(0, 0, 1, 0), vec4(at.x0, 0, at.z0, 0)}});
+      const std::string name = std::to_string(i) + "-" + std::to_string(j);
+      modules.place("pavement", "pavement-" + name, Frame{}.at({at.x0 - kPavement, 0, at.z0 - kPavement}),
+                    [&](std::vector<ScenePart>& parts) { parts.push_back(pavement("", {}, high)); });
+      modules.place(
+          "block" + std::to_string(kind), "block-" + name, Frame{}.at({at.x0, 0, at.z0}),
+          [&](std::vector<ScenePart>& parts) {
+            addBlock(parts, local, GeneratorRandom(seed, 0x71d6, kind).unit(), 0, 0, {seed, 0xb10c, kind});
+          });
     }
   }
   return scene;

@@ -34,19 +34,38 @@ Frame Frame::at(glm::vec3 p, float yaw_turn) const {
 
 void MeshBuilder::clear() {
   frame = {};
-  vertex_count_ = triangle_count_ = 0;
+  matter_ = Matter::kSolid;
+  size_ = {};
   positions_.clear();
   triangles_.clear();
+  matters_.clear();
+  places_.clear();
 }
 
-uint32_t MeshBuilder::vertex(glm::vec3 p) {
-  if (!counting_) positions_.push_back(frame.point(p));
-  return uint32_t(vertex_count_++);
+void MeshBuilder::count(uint64_t vertices, uint64_t triangles) {
+  size_.vertices += vertices;
+  if (matter_ == Matter::kLeaf) size_.leaf_vertices += vertices;
+  size_.triangles[size_t(matter_)] += triangles;
+}
+
+uint32_t MeshBuilder::vertex(glm::vec3 p, glm::vec2 place) {
+  if (!counting_) {
+    positions_.push_back(frame.point(p));
+    if (matter_ == Matter::kLeaf) {
+      places_.resize(positions_.size(), kNoPlace);
+      places_.back() = place;
+    }
+  }
+  count(1, 0);
+  return uint32_t(size_.vertices - 1);
 }
 
 void MeshBuilder::triangle(uint32_t a, uint32_t b, uint32_t c) {
-  if (!counting_) triangles_.push_back({a, b, c});
-  triangle_count_++;
+  if (!counting_) {
+    triangles_.push_back({a, b, c});
+    if (alpha_) matters_.push_back(matter_);
+  }
+  count(0, 1);
 }
 
 void MeshBuilder::quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
@@ -55,10 +74,10 @@ void MeshBuilder::quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
 }
 
 void MeshBuilder::quad(glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
-  const uint32_t first = vertex(a);
-  vertex(b);
-  vertex(c);
-  vertex(d);
+  const uint32_t first = vertex(a, {0, 1});
+  vertex(b, {1, 1});
+  vertex(c, {1, 0});
+  vertex(d, {0, 0});
   quad(first, first + 1, first + 2, first + 3);
 }
 
@@ -66,7 +85,7 @@ void MeshBuilder::box(glm::vec3 low, glm::vec3 high, uint32_t leave_out) {
   // Corner i: bit 0 x, bit 1 y, bit 2 z.
   static constexpr uint8_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
                                            {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
-  const uint32_t first = uint32_t(vertex_count_);
+  const uint32_t first = uint32_t(size_.vertices);
   for (uint32_t i = 0; i < 8; ++i) {
     vertex({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
   }
@@ -86,7 +105,7 @@ void MeshBuilder::lathe(std::span<const LathePoint> profile, uint32_t sides) {
   uint32_t below = 0;
   for (size_t k = 0; k < profile.size(); ++k) {
     const LathePoint p = profile[k];
-    const uint32_t ring = uint32_t(vertex_count_);
+    const uint32_t ring = uint32_t(size_.vertices);
     if (p.radius == 0) {
       vertex({0, p.height, 0});
     } else {
@@ -128,11 +147,10 @@ glm::vec3 sideOf(glm::vec3 d) {
 
 void MeshBuilder::tube(std::span<const glm::vec3> path, std::span<const float> radii, uint32_t sides,
                        bool capped) {
-  const uint32_t first = uint32_t(vertex_count_);
+  const uint32_t first = uint32_t(size_.vertices);
   const size_t rings = path.size();
   if (counting_) {
-    vertex_count_ += rings * sides + (capped ? 2 : 0);
-    triangle_count_ += (rings - 1) * sides * 2 + (capped ? 2 * sides : 0);
+    count(rings * sides + (capped ? 2 : 0), (rings - 1) * sides * 2 + (capped ? 2 * sides : 0));
     return;
   }
   glm::vec3 side = sideOf(unitVector(path[1] - path[0]));

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -37,6 +38,23 @@ enum BoxFaces : uint32_t {
   kNoHighZ = 32
 };
 
+/// What a triangle is made of. Where alpha is not asked for, all is solid.
+enum class Matter : uint8_t {
+  kSolid,
+  kPane,  ///< of glass
+  kLeaf   ///< a card with a picture of leaves, whose rest is holes
+};
+
+/// How many triangles of each matter, and vertices.
+struct MeshSize {
+  uint64_t vertices = 0;                ///< in all
+  uint64_t leaf_vertices = 0;           ///< of them: made for leaves
+  std::array<uint64_t, 3> triangles{};  ///< by Matter
+
+  uint64_t allTriangles() const { return triangles[0] + triangles[1] + triangles[2]; }
+  uint64_t of(Matter matter) const { return triangles[size_t(matter)]; }
+};
+
 /// A point of a surface of revolution.
 struct LathePoint {
   float radius, height;
@@ -47,13 +65,22 @@ struct LathePoint {
 class MeshBuilder {
  public:
   enum class Mode { kStore, kCount };
-  explicit MeshBuilder(Mode mode = Mode::kStore) : counting_(mode == Mode::kCount) {}
+  /// alpha: shapes may be of panes and leaves.
+  explicit MeshBuilder(Mode mode = Mode::kStore, bool alpha = false)
+      : counting_(mode == Mode::kCount), alpha_(alpha) {}
 
   Frame frame;
 
-  uint32_t vertex(glm::vec3 p);
+  /// Following triangles are of this matter, if alpha is asked for.
+  void use(Matter matter) { matter_ = alpha_ ? matter : Matter::kSolid; }
+  /// Whether panes and leaves are asked for.
+  bool alpha() const { return alpha_; }
+
+  /// place: of a leaf's, in its picture, 0..1 from the upper left corner.
+  uint32_t vertex(glm::vec3 p, glm::vec2 place = glm::vec2(0));
   void triangle(uint32_t a, uint32_t b, uint32_t c);
   void quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d);
+  /// Of leaves: the whole picture, its lower edge from a to b.
   void quad(glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d);
 
   /// Axis-aligned in the frame; low < high on every axis. leave_out: BoxFaces.
@@ -61,7 +88,8 @@ class MeshBuilder {
   /// nu by nv quads over corner + [0, 1] u + [0, 1] v; faces u x v.
   void patch(glm::vec3 corner, glm::vec3 u, glm::vec3 v, uint32_t nu, uint32_t nv);
   /// nu by nv quads of any surface: point(i, j) is called once for each vertex, i = 0..nu, j = 0..nv, and not
-  /// at all where only counting. closed: column nu is column 0. Faces d/di x d/dj.
+  /// at all where only counting. Of leaves: the whole picture, upright along j. closed: column nu is column
+  /// 0. Faces d/di x d/dj.
   template <class Point>
   void sheet(uint32_t nu, uint32_t nv, bool closed, Point&& point);
   /// Turns the profile (from bottom to top, outside to the right) about the frame's y axis. sides >= 3.
@@ -72,31 +100,44 @@ class MeshBuilder {
   /// Same, with a radius for every point.
   void tube(std::span<const glm::vec3> path, std::span<const float> radii, uint32_t sides, bool capped);
 
-  uint64_t vertexCount() const { return vertex_count_; }
-  uint64_t triangleCount() const { return triangle_count_; }
+  uint64_t vertexCount() const { return size_.vertices; }
+  uint64_t triangleCount() const { return size_.allTriangles(); }
+  const MeshSize& size() const { return size_; }
   const std::vector<glm::vec3>& positions() const { return positions_; }
   const std::vector<glm::uvec3>& triangles() const { return triangles_; }
+  /// Of each triangle; empty where alpha is not asked for.
+  const std::vector<Matter>& matters() const { return matters_; }
+  /// Of each vertex, where there are leaves; kNoPlace of those that are not theirs. Vertices beyond have
+  /// none.
+  const std::vector<glm::vec2>& places() const { return places_; }
+  static constexpr glm::vec2 kNoPlace{-1};
   void clear();
 
  private:
+  void count(uint64_t vertices, uint64_t triangles);
+
   bool counting_;
-  uint64_t vertex_count_ = 0;
-  uint64_t triangle_count_ = 0;
+  bool alpha_;
+  Matter matter_ = Matter::kSolid;
+  MeshSize size_;
   std::vector<glm::vec3> positions_;
   std::vector<glm::uvec3> triangles_;
+  std::vector<Matter> matters_;
+  std::vector<glm::vec2> places_;
 };
 
 template <class Point>
 void MeshBuilder::sheet(uint32_t nu, uint32_t nv, bool closed, Point&& point) {
   const uint32_t columns = closed ? nu : nu + 1;
   if (counting_) {
-    vertex_count_ += uint64_t(columns) * (nv + 1);
-    triangle_count_ += uint64_t(nu) * nv * 2;
+    count(uint64_t(columns) * (nv + 1), uint64_t(nu) * nv * 2);
     return;
   }
-  const uint32_t first = uint32_t(vertex_count_);
+  const uint32_t first = uint32_t(size_.vertices);
   for (uint32_t j = 0; j <= nv; ++j) {
-    for (uint32_t i = 0; i < columns; ++i) vertex(point(i, j));
+    for (uint32_t i = 0; i < columns; ++i) {
+      vertex(point(i, j), {float(i) / float(nu), 1 - float(j) / float(nv)});
+    }
   }
   for (uint32_t j = 0; j < nv; ++j) {
     for (uint32_t i = 0; i < nu; ++i) {

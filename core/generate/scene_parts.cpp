@@ -4,60 +4,70 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/generate/generator_random.h"
+#include "core/generate/leaf_mask.h"
 #include "core/scene/instances.h"
+#include "core/scene/masked_triangle.h"
 
 namespace sightline {
 namespace {
 
-struct Size {
-  uint64_t vertices = 0, triangles = 0;
-};
+/// What the objects of each matter of a part are called after it.
+constexpr std::array<std::pair<Matter, const char*>, 3> kMatters = {
+    {{Matter::kSolid, ""}, {Matter::kPane, "-panes"}, {Matter::kLeaf, "-leaves"}}};
 
-constexpr Size kNone{~uint64_t(0), ~uint64_t(0)};
-
-/// Of all copies.
-Size sizeOf(const ScenePart& part, uint32_t level) {
-  MeshBuilder counter(MeshBuilder::Mode::kCount);
+/// Of one copy.
+MeshSize sizeOf(const ScenePart& part, uint32_t level, bool alpha) {
+  MeshBuilder counter(MeshBuilder::Mode::kCount, alpha);
   part.make(counter, level);
-  return {part.copies * counter.vertexCount(), part.copies * counter.triangleCount()};
+  return counter.size();
 }
 
 /// Sizes of all parts at one level (or their highest, where that is less).
-std::vector<Size> sizesAt(const std::vector<ScenePart>& parts, uint32_t level) {
-  std::vector<Size> sizes(parts.size());
-  tbb::parallel_for(size_t(0), parts.size(),
-                    [&](size_t i) { sizes[i] = sizeOf(parts[i], std::min(level, parts[i].max_level)); });
+std::vector<MeshSize> sizesAt(const std::vector<ScenePart>& parts, uint32_t level, bool alpha) {
+  std::vector<MeshSize> sizes(parts.size());
+  tbb::parallel_for(size_t(0), parts.size(), [&](size_t i) {
+    sizes[i] = sizeOf(parts[i], std::min(level, parts[i].max_level), alpha);
+  });
   return sizes;
 }
 
-uint64_t totalTriangles(const std::vector<Size>& sizes) {
-  return std::accumulate(sizes.begin(), sizes.end(), uint64_t(0),
-                         [](uint64_t sum, const Size& s) { return sum + s.triangles; });
+/// Of all copies.
+uint64_t trianglesOf(const ScenePart& part, const MeshSize& size) {
+  return part.copies * size.allTriangles();
 }
 
+uint64_t totalTriangles(const std::vector<ScenePart>& parts, const std::vector<MeshSize>& sizes) {
+  uint64_t sum = 0;
+  for (size_t i = 0; i < parts.size(); ++i) sum += trianglesOf(parts[i], sizes[i]);
+  return sum;
+}
+
+/// Of each part.
 struct Plan {
   std::vector<uint32_t> levels;
-  std::vector<Size> sizes;
+  std::vector<MeshSize> sizes;
 };
 
-Plan planLevels(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed) {
+Plan planLevels(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed, bool alpha) {
   uint32_t highest = 0;
   for (const ScenePart& part : parts) highest = std::max(highest, part.max_level);
 
   uint32_t level = 0;
-  std::vector<Size> sizes = sizesAt(parts, 0);
-  uint64_t total = totalTriangles(sizes);
+  std::vector<MeshSize> sizes = sizesAt(parts, 0, alpha);
+  uint64_t total = totalTriangles(parts, sizes);
   if (total > triangles) {
     throw Error("generated scene: the coarsest has " + std::to_string(total) + " triangles, more than the " +
                 std::to_string(triangles) + " asked for");
   }
   while (level < highest) {
-    std::vector<Size> finer = sizesAt(parts, level + 1);
-    const uint64_t finer_total = totalTriangles(finer);
+    std::vector<MeshSize> finer = sizesAt(parts, level + 1, alpha);
+    const uint64_t finer_total = totalTriangles(parts, finer);
     if (finer_total > triangles) break;
     sizes = std::move(finer);
     total = finer_total;
@@ -72,18 +82,20 @@ Plan planLevels(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_
   for (size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(uint32_t(i))]);
 
   // What each part would have one level higher; none where it is as high as it gets.
-  std::vector<Size> next(parts.size());
+  std::vector<std::optional<MeshSize>> next(parts.size());
   const auto lookAhead = [&](size_t i) {
-    next[i] = plan.levels[i] < parts[i].max_level ? sizeOf(parts[i], plan.levels[i] + 1) : kNone;
+    next[i].reset();
+    if (plan.levels[i] < parts[i].max_level) next[i] = sizeOf(parts[i], plan.levels[i] + 1, alpha);
   };
   tbb::parallel_for(size_t(0), parts.size(), lookAhead);
   for (bool raised = true; raised;) {
     raised = false;
     for (const size_t i : order) {
-      if (next[i].triangles == kNone.triangles || total - sizes[i].triangles + next[i].triangles > triangles)
-        continue;
-      total = total - sizes[i].triangles + next[i].triangles;
-      sizes[i] = next[i];
+      if (!next[i]) continue;
+      const uint64_t with_next = total - trianglesOf(parts[i], sizes[i]) + trianglesOf(parts[i], *next[i]);
+      if (with_next > triangles) continue;
+      total = with_next;
+      sizes[i] = *next[i];
       plan.levels[i]++;
       lookAhead(i);
       raised = true;
@@ -93,48 +105,88 @@ Plan planLevels(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_
   return plan;
 }
 
-}  // namespace
+/// What lies before each part, and behind the last.
+std::vector<MeshSize> startsOf(const std::vector<MeshSize>& sizes) {
+  std::vector<MeshSize> starts(sizes.size() + 1);
+  for (size_t i = 0; i < sizes.size(); ++i) {
+    starts[i + 1] = starts[i];
+    starts[i + 1].vertices += sizes[i].vertices;
+    starts[i + 1].leaf_vertices += sizes[i].leaf_vertices;
+    for (size_t m = 0; m < kMatters.size(); ++m) starts[i + 1].triangles[m] += sizes[i].triangles[m];
+  }
+  return starts;
+}
 
-namespace {
+/// An object for each matter that a part has.
+void addObjects(const std::string& name, const MeshSize& size, Scene& scene, uint32_t first) {
+  for (const auto& [matter, suffix] : kMatters) {
+    const auto count = uint32_t(size.of(matter));
+    if (count != 0) scene.objects.push_back({name + suffix, first, count});
+    first += count;
+  }
+}
+
+/// Copies a part into its place in a scene. start: what lies before it; all: the whole.
+void placePart(const MeshBuilder& mesh, const MeshSize& start, const MeshSize& all, Scene& scene) {
+  const auto& places = mesh.places();
+  const auto isLeaf = [&](size_t vertex) {
+    return vertex < places.size() && places[vertex] != MeshBuilder::kNoPlace;
+  };
+  std::vector<uint32_t> numbers(mesh.positions().size());
+  uint64_t solid = start.vertices - start.leaf_vertices;
+  uint64_t leaf = all.vertices - all.leaf_vertices + start.leaf_vertices;
+  for (size_t v = 0; v < numbers.size(); ++v) {
+    numbers[v] = uint32_t(isLeaf(v) ? leaf++ : solid++);
+    scene.positions[numbers[v]] = mesh.positions()[v];
+  }
+  std::array<uint64_t, 3> next{};  // triangle of each matter
+  uint64_t first = start.allTriangles();
+  for (size_t m = 0; m < kMatters.size(); ++m) {
+    next[m] = first;
+    first += mesh.size().triangles[m];
+  }
+  uint64_t masked = start.of(Matter::kLeaf);
+  for (size_t i = 0; i < mesh.triangles().size(); ++i) {
+    const glm::uvec3 t = mesh.triangles()[i];
+    const Matter matter = mesh.matters().empty() ? Matter::kSolid : mesh.matters()[i];
+    const uint64_t id = next[size_t(matter)]++;
+    scene.triangles[id] = {numbers[t.x], numbers[t.y], numbers[t.z]};
+    if (matter == Matter::kPane) scene.surfaces.words[id] = kSurfaceGlass;
+    if (matter != Matter::kLeaf) continue;
+    const auto at = [&](uint32_t vertex) { return glm::dvec2(places[vertex]) * double(kLeafTexels); };
+    scene.surfaces.masked[masked] = *maskedTriangle(scene.surfaces, 0, {at(t.x), at(t.y), at(t.z)});
+    scene.surfaces.words[id] = kSurfaceMasked | uint32_t(masked++);
+  }
+}
 
 /// All parts at the levels of the plan, once each.
-Scene makeParts(const std::vector<ScenePart>& parts, Plan plan) {
-  for (size_t i = 0; i < parts.size(); ++i) {
-    plan.sizes[i].vertices /= parts[i].copies;
-    plan.sizes[i].triangles /= parts[i].copies;
-  }
-  std::vector<Size> starts(parts.size() + 1);
-  for (size_t i = 0; i < parts.size(); ++i) {
-    starts[i + 1] = {starts[i].vertices + plan.sizes[i].vertices,
-                     starts[i].triangles + plan.sizes[i].triangles};
-  }
+Scene makeParts(const std::vector<ScenePart>& parts, const Plan& plan, bool alpha) {
+  const std::vector<MeshSize> starts = startsOf(plan.sizes);
+  const MeshSize& all = starts.back();
   Scene scene;
-  scene.positions.resize(starts.back().vertices);
-  scene.triangles.resize(starts.back().triangles);
+  scene.positions.resize(all.vertices);
+  scene.triangles.resize(all.allTriangles());
+  scene.alpha_triangles = all.of(Matter::kPane) + all.of(Matter::kLeaf);
+  if (scene.alpha_triangles != 0) scene.surfaces.words.resize(all.allTriangles(), 0);
+  scene.surfaces.masked.resize(all.of(Matter::kLeaf));
+  if (all.of(Matter::kLeaf) != 0) addLeafMask(scene.surfaces);
   for (size_t i = 0; i < parts.size(); ++i) {
-    if (plan.sizes[i].triangles == 0) continue;
-    scene.objects.push_back(
-        {parts[i].name, uint32_t(starts[i].triangles), uint32_t(plan.sizes[i].triangles)});
+    addObjects(parts[i].name, plan.sizes[i], scene, uint32_t(starts[i].allTriangles()));
   }
-  tbb::enumerable_thread_specific<MeshBuilder> builders;
+  tbb::enumerable_thread_specific<MeshBuilder> builders(MeshBuilder::Mode::kStore, alpha);
   tbb::parallel_for(size_t(0), parts.size(), [&](size_t i) {
     MeshBuilder& mesh = builders.local();
     mesh.clear();
     parts[i].make(mesh, plan.levels[i]);
-    std::copy(mesh.positions().begin(), mesh.positions().end(),
-              scene.positions.begin() + int64_t(starts[i].vertices));
-    const glm::uvec3 first(uint32_t(starts[i].vertices));
-    std::transform(mesh.triangles().begin(), mesh.triangles().end(),
-                   scene.triangles.begin() + int64_t(starts[i].triangles),
-                   [first](glm::uvec3 t) { return t + first; });
+    placePart(mesh, starts[i], all, scene);
   });
   return scene;
 }
 
 }  // namespace
 
-Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed) {
-  return makeParts(parts, planLevels(parts, triangles, seed));
+Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed, bool alpha) {
+  return makeParts(parts, planLevels(parts, triangles, seed, alpha), alpha);
 }
 
 Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed) {
@@ -148,22 +200,16 @@ Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed)
     }
     ends.push_back(parts.size());
   }
-  const Plan plan = planLevels(parts, triangles, seed);
-  const auto sizeBefore = [&](size_t end) {
-    Size sum;
-    for (size_t i = 0; i < end; ++i) {
-      sum.vertices += plan.sizes[i].vertices / parts[i].copies;
-      sum.triangles += plan.sizes[i].triangles / parts[i].copies;
-    }
-    return sum;
-  };
-  Scene scene = makeParts(parts, plan);
-  Size start = sizeBefore(plain_parts);
-  std::erase_if(scene.objects, [&](const SceneObject& o) { return o.first_triangle >= start.triangles; });
-  uint64_t next_id = start.triangles;
+  const Plan plan = planLevels(parts, triangles, seed, false);
+  const std::vector<MeshSize> starts = startsOf(plan.sizes);
+  Scene scene = makeParts(parts, plan, false);
+  MeshSize start = starts[plain_parts];
+  uint64_t next_id = start.allTriangles();
+  std::erase_if(scene.objects, [&](const SceneObject& o) { return o.first_triangle >= next_id; });
   for (size_t m = 0; m < ends.size(); ++m) {
-    const Size end = sizeBefore(ends[m]);
-    const auto count = uint32_t(end.triangles - start.triangles);
+    const MeshSize& end = starts[ends[m]];
+    const auto first = uint32_t(start.allTriangles());
+    const auto count = uint32_t(end.allTriangles() - first);
     if (count != 0) {
       for (const SceneModule::Place& place : repeated.modules[m].places) {
         SceneInstance instance;
@@ -174,8 +220,8 @@ Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed)
         scene.objects.push_back({place.name, uint32_t(next_id), count});
         next_id += count;
       }
-      scene.meshes.push_back({uint32_t(start.vertices), uint32_t(end.vertices - start.vertices),
-                              uint32_t(start.triangles), count});
+      scene.meshes.push_back(
+          {uint32_t(start.vertices), uint32_t(end.vertices - start.vertices), first, count});
     }
     start = end;
   }

@@ -115,7 +115,7 @@ void makeLamp(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
 }
 
 void makeTree(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
-  if (level < 2) return;
+  if (level < (mesh.alpha() ? 1u : 2u)) return;  // cards are cheap
   GeneratorRandom random(seed, 0x73ee);
   const float trunk = random.uniform(2.5f, 3.1f), crown = random.uniform(1.25f, 1.6f);
   const float high = random.uniform(1.3f, 1.7f);
@@ -126,6 +126,17 @@ void makeTree(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
   const float radii[] = {0.16f, 0.11f, 0.03f};
   mesh.tube(stem, radii, sides, false);
   const glm::vec3 middle(0, trunk + high - 0.3f, 0);
+  if (level < 5 && mesh.alpha()) {
+    // Upright cards through the trunk.
+    mesh.use(Matter::kLeaf);
+    const uint32_t cards = std::max(2u, level);
+    for (uint32_t i = 0; i < cards; ++i) {
+      const Turn t = turn(0.5f * (float(i) + random.unit()) / float(cards));
+      const glm::vec3 out = glm::vec3(t.cos, 0, t.sin) * crown, up(0, 1.2f * high, 0);
+      mesh.quad(middle - out - up, middle + out - up, middle + out + up, middle - out + up);
+    }
+    return;
+  }
   if (level < 5) {
     const Frame base = mesh.frame;
     mesh.frame = base.at(middle);
@@ -145,7 +156,9 @@ void makeTree(MeshBuilder& mesh, uint64_t seed, uint32_t level) {
     mesh.tube(path, thin, std::max(3u, sides / 2), false);
   }
   const uint32_t leaves = 14 * (level - 4) * (level - 4) + 60;
-  const float size = std::max(0.06f, 3.2f / std::sqrt(float(leaves)));
+  // A card is larger than a leaf, for some of it is holes.
+  const float size = std::max(0.06f, 3.2f / std::sqrt(float(leaves))) * (mesh.alpha() ? 1.6f : 1.0f);
+  mesh.use(Matter::kLeaf);
   for (uint32_t i = 0; i < leaves; ++i) {
     // Uniform in a ball by rejection, pushed out: most leaves are near the surface.
     glm::vec3 p;

@@ -10,6 +10,21 @@
 #include "core/picture/view_picture.h"
 
 namespace sightline {
+namespace {
+
+/// What the pixels of a view see through.
+std::vector<SeenThrough> glassOf(Tracer& tracer, const ViewFrame& frame, uint32_t resolution) {
+  if (!tracer.hasGlass()) return {};
+  std::vector<Ray> rays;
+  for (uint32_t y = 0; y < resolution; ++y) {
+    for (uint32_t x = 0; x < resolution; ++x) rays.push_back(viewRay(frame, x, y, resolution));
+  }
+  std::vector<Hit> hits(rays.size());
+  tracer.traceRays(rays, hits);
+  return tracer.traceGlass(rays, hits);
+}
+
+}  // namespace
 
 std::vector<std::string> WorstPictures::draw(const Scene& scene, Tracer& tracer, const CellPvs& pvs,
                                              uint32_t cell_index, size_t set,
@@ -22,7 +37,9 @@ std::vector<std::string> WorstPictures::draw(const Scene& scene, Tracer& tracer,
     const std::string of_set = alone ? "" : fmt::format("-{}", set);
     names.push_back(fmt::format("{}{}-view-{}.png", pictureName(pvs.cell.name, cell_index), of_set, view));
     tracer.traceViews(std::span(frames).subspan(view, 1), options.resolution, triangles);
-    savePng(viewPicture(scene, frames[view], options.resolution, triangles, member), folder / names.back());
+    const std::vector<SeenThrough> glass = glassOf(tracer, frames[view], options.resolution);
+    savePng(viewPicture(scene, frames[view], options.resolution, triangles, glass, member),
+            folder / names.back());
   }
   return names;
 }

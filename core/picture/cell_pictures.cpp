@@ -17,11 +17,11 @@ std::string pictureName(const std::string& cell_name, uint32_t index) {
 }
 
 double saveCellPictures(const TraceRays& trace, const Scene& scene, const CellPvs& cell, uint32_t index,
-                        const std::filesystem::path& folder) {
+                        const std::filesystem::path& folder, const TraceGlass& glass) {
   makeFolder(folder);
   const std::string name = pictureName(cell.cell.name, index);
-  savePng(renderOutside(trace, scene, cell).image, folder / (name + "-outside.png"));
-  const Picture inside = renderInside(trace, scene, cell);
+  savePng(renderOutside(trace, scene, cell, {}, glass).image, folder / (name + "-outside.png"));
+  const Picture inside = renderInside(trace, scene, cell, {}, glass);
   savePng(inside.image, folder / (name + "-inside.png"));
   return inside.scene_pixels == 0 ? 0 : double(inside.missing_pixels) / double(inside.scene_pixels);
 }

@@ -77,8 +77,9 @@ std::array<Tile, 3> placeTiles(uint32_t width, uint32_t height) {
 
 class InsideView {
  public:
-  InsideView(const TraceRays& trace, const Scene& scene, const CellPvs& pvs, const PictureOptions& options)
-      : trace_(trace), scene_(scene), member_(membership(scene, pvs.triangles)) {
+  InsideView(const TraceRays& trace, const TraceGlass& glass, const Scene& scene, const CellPvs& pvs,
+             const PictureOptions& options)
+      : trace_(trace), glass_(glass), scene_(scene), member_(membership(scene, pvs.triangles)) {
     picture_.image = Image(options.width, options.height, kGapColor);
   }
 
@@ -88,29 +89,33 @@ class InsideView {
       return makeRay(panorama.origin, panorama.direction((x + 0.5) / (tile.width * kSamplesPerAxis),
                                                          (y + 0.5) / (tile.height * kSamplesPerAxis)));
     };
-    const auto shade = [&](uint32_t x, uint32_t y, std::span<const Ray> rays, std::span<const Hit> hits,
-                           std::span<const Hit>) {
+    const auto shade = [&](uint32_t x, uint32_t y, std::span<const Sample> samples) {
       glm::vec3 sum(0);
-      bool missing = false, shows_scene = false;
-      for (size_t i = 0; i < hits.size(); ++i) {
-        const glm::vec3 direction(rays[i].direction);
-        if (hits[i].triangle == kNoTriangle) {
-          sum += skyColor(std::max(0.0f, direction.y));
-          continue;
-        }
+      bool shows_scene = false;
+      const size_t missing_before = picture_.missing_triangles.size();
+      const auto see = [&](uint32_t triangle) {
         shows_scene = true;
-        if (member_[hits[i].triangle] == 0) {
-          missing = true;
-          picture_.missing_triangles.push_back(hits[i].triangle);
+        if (member_[triangle] == 0) picture_.missing_triangles.push_back(triangle);
+      };
+      for (const auto& [ray, hit, shadow_hit, panes] : samples) {
+        const glm::vec3 direction(ray.direction);
+        glm::vec3 color = skyColor(std::max(0.0f, direction.y));
+        for (const SeenThrough& pane : panes) see(pane.triangle);
+        if (hit.triangle != kNoTriangle) {
+          see(hit.triangle);
+          const glm::vec3 normal = facingNormal(scene_, hit.triangle, direction);
+          color = kVisibleColor * lightOn(normal, direction, to_sun, 1);
         }
-        sum +=
-            kVisibleColor * lightOn(facingNormal(scene_, hits[i].triangle, direction), direction, to_sun, 1);
+        sum += throughGlass(scene_, color, panes, direction, to_sun,
+                            [](uint32_t) { return kVisibleGlassColor; });
       }
       picture_.scene_pixels += shows_scene ? 1 : 0;
-      if (missing) missing_.push_back(size_t(y) * picture_.image.width + x);
-      picture_.image.at(x, y) = encode(sum / float(hits.size()));
+      if (picture_.missing_triangles.size() > missing_before) {
+        missing_.push_back(size_t(y) * picture_.image.width + x);
+      }
+      picture_.image.at(x, y) = encode(sum / float(samples.size()));
     };
-    renderTile(trace_, tile, sample_ray, {}, shade);
+    renderTile(trace_, glass_, tile, sample_ray, {}, shade);
   }
 
   Picture finish() {
@@ -124,6 +129,7 @@ class InsideView {
 
  private:
   const TraceRays& trace_;
+  const TraceGlass& glass_;
   const Scene& scene_;
   std::vector<uint8_t> member_;
   Picture picture_;
@@ -133,9 +139,9 @@ class InsideView {
 }  // namespace
 
 Picture renderInside(const TraceRays& trace, const Scene& scene, const CellPvs& pvs,
-                     const PictureOptions& options) {
+                     const PictureOptions& options, const TraceGlass& glass) {
   checkSize(options.width, options.height);
-  InsideView view(trace, scene, pvs, options);
+  InsideView view(trace, glass, scene, pvs, options);
   const std::array<Panorama, 3> panoramas = placePanoramas(pvs.cell);
   const std::array<Tile, 3> tiles = placeTiles(options.width, options.height);
   for (size_t i = 0; i < tiles.size(); ++i) view.render(tiles[i], panoramas[i]);

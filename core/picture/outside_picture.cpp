@@ -26,7 +26,7 @@ glm::vec3 hitPlace(const Ray& ray, const Hit& hit) {
 }  // namespace
 
 Picture renderOutside(const TraceRays& trace, const Scene& scene, const CellPvs& pvs,
-                      const PictureOptions& options) {
+                      const PictureOptions& options, const TraceGlass& glass) {
   checkSize(options.width, options.height);
   const std::vector<uint8_t> member = membership(scene, pvs.triangles);
   const OutsideView view = placeOutsideView(trace, scene, pvs, member, options);
@@ -52,28 +52,31 @@ Picture renderOutside(const TraceRays& trace, const Scene& scene, const CellPvs&
     if (shadow.triangle == kNoTriangle) return 1.0f;
     return view.cut_height && place.y + shadow.t * to_sun.y > *view.cut_height ? 1.0f : 0.0f;
   };
-  const auto shade = [&](uint32_t x, uint32_t y, std::span<const Ray> rays, std::span<const Hit> hits,
-                         std::span<const Hit> shadow_hits) {
+  const auto shade = [&](uint32_t x, uint32_t y, std::span<const Sample> samples) {
     glm::vec3 sum(0);
     float& depth = depths[size_t(y) * options.width + x];
     bool shows_scene = false;
-    for (size_t i = 0; i < hits.size(); ++i) {
-      if (hits[i].triangle == kNoTriangle) {
-        sum += skyColor(1 - (float(y) + 0.5f) / float(options.height));
-        continue;
+    for (const auto& [ray, hit, shadow_hit, panes] : samples) {
+      glm::vec3 color = skyColor(1 - (float(y) + 0.5f) / float(options.height));
+      const bool on_scene = hit.triangle != kNoTriangle;
+      shows_scene |= on_scene || !panes.empty();
+      const glm::vec3 direction =
+          on_scene || !panes.empty() ? glm::normalize(glm::vec3(ray.direction)) : glm::vec3(0);
+      if (on_scene) {
+        const glm::vec3 place = hitPlace(ray, hit);
+        depth = std::min(depth, float(glm::dot(glm::dvec3(place) - camera.position, camera.forward)));
+        const glm::vec3 normal = facingNormal(scene, hit.triangle, direction);
+        color = (member[hit.triangle] != 0 ? kVisibleColor : kHiddenColor) *
+                lightOn(normal, direction, to_sun, sunlit(place, shadow_hit));
       }
-      shows_scene = true;
-      const glm::vec3 place = hitPlace(rays[i], hits[i]);
-      depth = std::min(depth, float(glm::dot(glm::dvec3(place) - camera.position, camera.forward)));
-      const glm::vec3 direction = glm::normalize(glm::vec3(rays[i].direction));
-      const glm::vec3 normal = facingNormal(scene, hits[i].triangle, direction);
-      const glm::vec3 color = member[hits[i].triangle] != 0 ? kVisibleColor : kHiddenColor;
-      sum += color * lightOn(normal, direction, to_sun, sunlit(place, shadow_hits[i]));
+      sum += throughGlass(scene, color, panes, direction, to_sun, [&](uint32_t triangle) {
+        return member[triangle] != 0 ? kVisibleGlassColor : kHiddenGlassColor;
+      });
     }
     picture.scene_pixels += shows_scene ? 1 : 0;
-    picture.image.at(x, y) = encode(sum / float(hits.size()));
+    picture.image.at(x, y) = encode(sum / float(samples.size()));
   };
-  renderTile(trace, {0, 0, options.width, options.height}, sample_ray, shadow_ray, shade);
+  renderTile(trace, glass, {0, 0, options.width, options.height}, sample_ray, shadow_ray, shade);
   drawCell(picture.image, depths, camera, pvs.cell);
   return picture;
 }

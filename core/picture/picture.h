@@ -7,11 +7,15 @@
 #include "core/picture/png.h"
 #include "core/pvs/cell_pvs.h"
 #include "core/scene/scene.h"
+#include "core/trace/seen_glass.h"
 
 namespace sightline {
 
 /// Finds the nearest hits of rays, one each: Tracer::traceRays.
 using TraceRays = std::function<void(std::span<const Ray> rays, std::span<Hit> hits)>;
+/// The glass that rays meet on their way to these hits: Tracer::traceGlass. Empty: there is none.
+using TraceGlass =
+    std::function<std::vector<SeenThrough>(std::span<const Ray> rays, std::span<const Hit> hits)>;
 
 /// Sides of a picture, pixels.
 inline constexpr uint32_t kMinPictureSide = 16, kMaxPictureSide = 16384;
@@ -40,15 +44,16 @@ struct Picture {
 
 /// The view cell and what lies around it, obliquely from above, from the side that shows most of the PVS:
 /// triangles of the PVS green, the rest grey, the cell as an orange box, fainter where something hides it.
-/// 2 x 2 samples a pixel; y is up. Throws Error.
+/// 2 x 2 samples a pixel; y is up. Through the holes of masks one sees what is behind, and through glass,
+/// which tints it: bluish green where it is in the PVS, bluish grey where not. Throws Error.
 Picture renderOutside(const TraceRays& trace, const Scene& scene, const CellPvs& pvs,
-                      const PictureOptions& options = {});
+                      const PictureOptions& options = {}, const TraceGlass& glass = {});
 
 /// What is seen from the cell, on one sheet of three panoramas: the cell's centre above, two points of its
 /// surface below. A box looks all around (360 by 180 degrees), a flat cell along its normal (180 by 90).
-/// Pixels that show a triangle outside the PVS are (255, 0, 0), nothing else is; where they are few, each
-/// has a ring around it. Throws Error.
+/// Pixels that show a triangle outside the PVS, glass that is seen through too, are (255, 0, 0), nothing else
+/// is; where they are few, each has a ring around it. Throws Error.
 Picture renderInside(const TraceRays& trace, const Scene& scene, const CellPvs& pvs,
-                     const PictureOptions& options = {});
+                     const PictureOptions& options = {}, const TraceGlass& glass = {});
 
 }  // namespace sightline

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -12,6 +13,7 @@ namespace sightline {
 namespace {
 
 constexpr float kGamma = 2.2f;
+constexpr float kGlassOpacity = 0.38f;       ///< of a pane seen straight on
 constexpr uint64_t kBandSamples = 1u << 20;  ///< rays at once: 40 MiB with their hits, full launches
 
 }  // namespace
@@ -55,6 +57,22 @@ float lightOn(glm::vec3 normal, glm::vec3 direction, glm::vec3 to_sun, float sun
   return sky + sun + fill + viewer;
 }
 
+glm::vec3 throughGlass(const Scene& scene, glm::vec3 behind, std::span<const SeenThrough> glass,
+                       glm::vec3 direction, glm::vec3 to_sun,
+                       const std::function<glm::vec3(uint32_t triangle)>& color) {
+  float passes = 1, weights = 0;
+  glm::vec3 panes(0);
+  for (const SeenThrough& pane : glass) {
+    const glm::vec3 normal = facingNormal(scene, pane.triangle, direction);
+    const float slant = 1 - std::max(0.0f, -glm::dot(normal, direction));
+    const float opacity = kGlassOpacity + (1 - kGlassOpacity) * 0.5f * slant * slant;
+    passes *= 1 - opacity;
+    panes += opacity * color(pane.triangle) * lightOn(normal, direction, to_sun, 1);
+    weights += opacity;
+  }
+  return weights > 0 ? passes * behind + (1 - passes) * panes / weights : behind;
+}
+
 Ray makeRay(glm::vec3 origin, glm::vec3 direction) {
   return {glm::vec4(origin, 0), glm::vec4(direction, 0)};
 }
@@ -75,13 +93,14 @@ glm::vec3 skyColor(float height) {
   return glm::mix(glm::vec3(0.93f), glm::vec3(0.72f, 0.82f, 0.93f), height);
 }
 
-void renderTile(const TraceRays& trace, const Tile& tile, const SampleRay& sample_ray,
-                const ShadowRay& shadow_ray, const ShadePixel& shade) {
+void renderTile(const TraceRays& trace, const TraceGlass& glass, const Tile& tile,
+                const SampleRay& sample_ray, const ShadowRay& shadow_ray, const ShadePixel& shade) {
   constexpr uint32_t kPerPixel = kSamplesPerAxis * kSamplesPerAxis;
   const uint64_t row_samples = uint64_t(tile.width) * kPerPixel;
   const uint32_t band_rows = uint32_t(std::clamp<uint64_t>(kBandSamples / row_samples, 1, tile.height));
   std::vector<Ray> rays(band_rows * row_samples), shadow_rays;
   std::vector<Hit> hits(rays.size()), shadow_hits;
+  std::vector<SeenThrough> seen;
   for (uint32_t first = 0; first < tile.height; first += band_rows) {
     const uint32_t rows = std::min(band_rows, tile.height - first);
     const size_t count = rows * row_samples;
@@ -91,6 +110,7 @@ void renderTile(const TraceRays& trace, const Tile& tile, const SampleRay& sampl
                            (first + pixel / tile.width) * kSamplesPerAxis + sample / kSamplesPerAxis);
     }
     trace(std::span(rays).first(count), std::span(hits).first(count));
+    if (glass) seen = glass(std::span(rays).first(count), std::span(hits).first(count));
     if (shadow_ray) {
       shadow_rays.resize(count);
       shadow_hits.resize(count);
@@ -99,11 +119,16 @@ void renderTile(const TraceRays& trace, const Tile& tile, const SampleRay& sampl
       }
       trace(shadow_rays, shadow_hits);
     }
+    auto pane = seen.cbegin();
+    std::array<Sample, kPerPixel> samples;
     for (uint32_t pixel = 0; pixel < count / kPerPixel; ++pixel) {
-      const size_t at = size_t(pixel) * kPerPixel;
-      shade(tile.x + pixel % tile.width, tile.y + first + pixel / tile.width,
-            std::span(rays).subspan(at, kPerPixel), std::span(hits).subspan(at, kPerPixel),
-            shadow_ray ? std::span<const Hit>(shadow_hits).subspan(at, kPerPixel) : std::span<const Hit>());
+      for (uint32_t s = 0; s < kPerPixel; ++s) {
+        const size_t i = size_t(pixel) * kPerPixel + s;
+        const auto begin = pane;
+        while (pane != seen.cend() && pane->ray == i) ++pane;
+        samples[s] = {rays[i], hits[i], shadow_ray ? shadow_hits[i] : Hit{0, kNoTriangle}, {begin, pane}};
+      }
+      shade(tile.x + pixel % tile.width, tile.y + first + pixel / tile.width, samples);
     }
   }
 }

@@ -13,6 +13,8 @@ namespace sightline {
 /// Colours of the pictures, linear light.
 inline constexpr glm::vec3 kVisibleColor{0.10f, 0.50f, 0.16f};
 inline constexpr glm::vec3 kHiddenColor{0.50f, 0.51f, 0.53f};
+inline constexpr glm::vec3 kVisibleGlassColor{0.05f, 0.52f, 0.44f};
+inline constexpr glm::vec3 kHiddenGlassColor{0.33f, 0.42f, 0.56f};
 inline constexpr glm::vec3 kCellColor{1.0f, 0.33f, 0.0f};
 
 /// Samples along each side of a pixel.
@@ -31,6 +33,12 @@ glm::vec3 facingNormal(const Scene& scene, uint32_t triangle, glm::vec3 directio
 /// and from the viewer, so that no two sides of a house look alike. to_sun, normal and direction are unit
 /// vectors.
 float lightOn(glm::vec3 normal, glm::vec3 direction, glm::vec3 to_sun, float sunlit);
+
+/// What is behind glass, and the glass before it, in whatever order: flat on it, more than half of the light
+/// passes each pane, at a slant less. color: of a pane by its triangle. direction: of the ray.
+glm::vec3 throughGlass(const Scene& scene, glm::vec3 behind, std::span<const SeenThrough> glass,
+                       glm::vec3 direction, glm::vec3 to_sun,
+                       const std::function<glm::vec3(uint32_t triangle)>& color);
 
 /// A ray from `origin`; a zero direction marks a sample that shows nothing.
 Ray makeRay(glm::vec3 origin, glm::vec3 direction);
@@ -53,16 +61,23 @@ struct Tile {
 /// corner, (x + 0.5) / (width * kSamplesPerAxis) is the place in the tile.
 using SampleRay = std::function<Ray(uint32_t sample_x, uint32_t sample_y)>;
 
-/// What the samples of one pixel met, and where in the image the pixel is.
-using ShadePixel = std::function<void(uint32_t x, uint32_t y, std::span<const Ray> rays,
-                                      std::span<const Hit> hits, std::span<const Hit> shadow_hits)>;
+/// What a sample met.
+struct Sample {
+  Ray ray;
+  Hit hit;
+  Hit shadow_hit;  ///< of shadow_ray, where there is one
+  std::span<const SeenThrough> glass;
+};
+
+/// The samples of one pixel, and where in the image it is.
+using ShadePixel = std::function<void(uint32_t x, uint32_t y, std::span<const Sample> samples)>;
 
 /// Ray towards the light from the place that a sample met.
 using ShadowRay = std::function<Ray(const Ray& ray, const Hit& hit)>;
 
 /// Traces all samples of the tile, band by band, and hands each pixel's samples to `shade`. Without
-/// `shadow_ray` the shadow hits are empty.
-void renderTile(const TraceRays& trace, const Tile& tile, const SampleRay& sample_ray,
-                const ShadowRay& shadow_ray, const ShadePixel& shade);
+/// `shadow_ray` no shadow is hit. What is glass casts none.
+void renderTile(const TraceRays& trace, const TraceGlass& glass, const Tile& tile,
+                const SampleRay& sample_ray, const ShadowRay& shadow_ray, const ShadePixel& shade);
 
 }  // namespace sightline

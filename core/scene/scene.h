@@ -35,6 +35,7 @@ struct SceneObject {
   uint32_t triangle_count = 0;
   std::optional<GltfPart> part = {};  ///< glTF only; the object's triangles are then the primitive's, in
                                       ///< order (without those that --repair dropped)
+  bool single_sided = false;          ///< glTF doubleSided = false; of no effect but to be written again
 };
 
 /// Triangles that a scene holds once and shows in many places, with vertices of their own: runs of
@@ -162,8 +163,8 @@ struct Scene {
   uint32_t runEnd(uint32_t id, StoredTriangle at) const;
 };
 
-/// Hash of positions and triangles, and of surfaces and offset where there are any (XXH3, 64 bit): what a PVS depends
-/// on. Of a scene with instances that of the plain scene it stands for.
+/// Hash of positions and triangles, and of surfaces and offset where there are any (XXH3, 64 bit): what a PVS
+/// depends on. Of a scene with instances that of the plain scene it stands for.
 uint64_t hashScene(const Scene& scene);
 
 /// Axis-aligned bounds of the vertices that triangles use.

@@ -1,6 +1,5 @@
 #pragma once
 #include <algorithm>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,15 +8,9 @@
 #include "core/shared/types.h"
 #include "core/shared/view_ray.h"
 #include "core/trace/device_info.h"
+#include "core/trace/seen_glass.h"
 
 namespace sightline {
-
-/// A triangle of glass that a ray meets before or where it ends: it is seen, and seen through.
-struct SeenThrough {
-  uint32_t ray;  ///< its index
-  uint32_t triangle;
-  auto operator<=>(const SeenThrough&) const = default;
-};
 
 /// Says what rays hit in the scene that it holds: what pictures, measurements and cross-checks need. Not
 /// thread-safe. All throw Error.

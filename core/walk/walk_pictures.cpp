@@ -112,32 +112,34 @@ Image drawnPicture(const Scene& scene, Tracer& tracer, const Drawables& drawable
   }
   Image image(view.width(), view.height());
   const float away = glm::length(bounds.high - bounds.low) * 1e-5f;
-  renderTile([&](std::span<const Ray> rays, std::span<Hit> hits) { tracer.traceRays(rays, hits); },
-             {0, 0, image.width, image.height},
-             [&](uint32_t x, uint32_t y) {
-               return view.ray((x + 0.5) / kSamplesPerAxis, (y + 0.5) / kSamplesPerAxis);
-             },
-             [&](const Ray& ray, const Hit& hit) {
-               const glm::vec3 direction(ray.direction);
-               const glm::vec3 place = glm::vec3(ray.origin) + direction * hit.t;
-               return makeRay(place + facingNormal(scene, hit.triangle, direction) * away, kToSun);
-             },
-             [&](uint32_t x, uint32_t y, std::span<const Ray>, std::span<const Hit> hits,
-                 std::span<const Hit> shadows) {
-               glm::vec3 light(0);
-               for (size_t i = 0; i < hits.size(); ++i) {
-                 const uint32_t id = hits[i].triangle;
-                 if (id == kNoTriangle) {
-                   light += glm::vec3(0.97f);
-                   continue;
-                 }
-                 const float sunlit = shadows[i].triangle == kNoTriangle ? 1.0f : 0.0f;
-                 const glm::vec3 color = is_drawn[id] != 0 ? kVisibleColor * 1.2f : kHiddenColor;
-                 light += color * lightOn(facingNormal(scene, id, view.direction()), view.direction(), kToSun,
-                                          sunlit);
-               }
-               image.at(x, y) = encode(light / float(hits.size()));
-             });
+  renderTile(
+      [&](std::span<const Ray> rays, std::span<Hit> hits) { tracer.traceRays(rays, hits); },
+      [&](std::span<const Ray> rays, std::span<const Hit> hits) { return tracer.traceGlass(rays, hits); },
+      {0, 0, image.width, image.height},
+      [&](uint32_t x, uint32_t y) {
+        return view.ray((x + 0.5) / kSamplesPerAxis, (y + 0.5) / kSamplesPerAxis);
+      },
+      [&](const Ray& ray, const Hit& hit) {
+        const glm::vec3 direction(ray.direction);
+        const glm::vec3 place = glm::vec3(ray.origin) + direction * hit.t;
+        return makeRay(place + facingNormal(scene, hit.triangle, direction) * away, kToSun);
+      },
+      [&](uint32_t x, uint32_t y, std::span<const Sample> samples) {
+        glm::vec3 light(0);
+        for (const auto& [ray, hit, shadow_hit, panes] : samples) {
+          glm::vec3 behind(0.97f);
+          if (hit.triangle != kNoTriangle) {
+            const float sunlit = shadow_hit.triangle == kNoTriangle ? 1.0f : 0.0f;
+            const glm::vec3 color = is_drawn[hit.triangle] != 0 ? kVisibleColor * 1.2f : kHiddenColor;
+            behind = color * lightOn(facingNormal(scene, hit.triangle, view.direction()), view.direction(),
+                                     kToSun, sunlit);
+          }
+          light += throughGlass(scene, behind, panes, view.direction(), kToSun, [&](uint32_t id) {
+            return is_drawn[id] != 0 ? kVisibleGlassColor : kHiddenGlassColor;
+          });
+        }
+        image.at(x, y) = encode(light / float(samples.size()));
+      });
   drawCamera(image, view, camera, 0.12f * glm::length(bounds.high - bounds.low));
   return image;
 }

@@ -78,6 +78,16 @@ Scene reload(const std::string& extension, const std::string& bytes) {
 void requireRoundTrips(const Scene& scene) {
   if (scene.offset != glm::dvec3(0.0)) return;  // put back in double, it may round
   std::string obj, glb;
+  if (!scene.surfaces.empty()) {  // vertices of masked triangles may come back as several, and OBJ has none
+    writeGlb(scene, "again", [&](std::string_view piece) { glb += piece; });
+    const Scene again = reload(".glb", glb);
+    require(again.surfaces.words == scene.surfaces.words, "other surfaces after GLB");
+    for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
+      const auto a = scene.corners(id), b = again.corners(id);
+      require(std::memcmp(&a, &b, sizeof(a)) == 0, "another corner after GLB");
+    }
+    return;
+  }
   writeObj(scene, "again", [&](std::string_view piece) { obj += piece; });
   requireSame(scene, reload(".obj", obj), "after OBJ");
   writeGlb(scene, "again", [&](std::string_view piece) { glb += piece; });
