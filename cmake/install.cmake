@@ -47,7 +47,7 @@ endfunction()
 sl_library(pvs HEADERS ${pvs_headers} TARGETS sightline_base sightline_io sightline_cell sightline_pvs
            PRIVATE fmt::fmt PkgConfig::xxhash PkgConfig::zstd)
 
-set(objects sightline_bvh sightline_scene sightline_formats sightline_sampling sightline_trace sightline_device
+set(objects sightline_bvh sightline_scene sightline_path sightline_formats sightline_sampling sightline_trace sightline_device
     sightline_device_gpu sightline_device_cpu sightline_device_naive sightline_device_embree sightline_device_registry sightline_page
     report_page_parts sightline_gvs sightline_bake sightline_api)
 set(packages fmt::fmt PkgConfig::draco PkgConfig::xxhash TBB::tbb PkgConfig::webp PNG::PNG Threads::Threads
