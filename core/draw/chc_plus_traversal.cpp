@@ -167,9 +167,11 @@ void ChcPlusTraversal::ask(std::vector<uint32_t> nodes, bool retest) {
   std::vector<AxisBox> boxes;
   for (const uint32_t index : nodes) {
     const BoxNode& node = tree_.nodes[index];
-    const auto tight = options_.tight_bounds ? tree_.tightOf(node) : std::span(&node.box, 1);
+    const auto tight =
+        options_.tight_bounds && !node.isLeaf() ? tree_.tightOf(node) : std::span<const AxisBox>();
     // The node's own box grows (visit), and so do those in it, but for the last digit.
     const AxisBox own = frame_.guard().grown(node.box).value();
+    if (tight.empty()) boxes.push_back(own);
     for (const AxisBox& box : tight) boxes.push_back(frame_.guard().grown(box).value_or(own));
   }
   frame_.ask(std::move(boxes));

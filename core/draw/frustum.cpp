@@ -5,6 +5,7 @@
 // far less.
 #include "core/draw/frustum.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sightline {
@@ -28,9 +29,9 @@ Reach reachOf(const glm::dvec3& normal, const glm::dvec3& weights, const glm::dv
   for (int axis = 0; axis < 3; ++axis) {
     const double low = box.low[axis] - eye[axis], high = box.high[axis] - eye[axis];
     const double a = normal[axis] * low, b = normal[axis] * high;
-    reach.least += std::fmin(a, b);
-    reach.largest += std::fmax(a, b);
-    reach.size += weights[axis] * std::fmax(std::fabs(low), std::fabs(high));
+    reach.least += std::min(a, b);
+    reach.largest += std::max(a, b);
+    reach.size += weights[axis] * std::max(std::fabs(low), std::fabs(high));
   }
   return reach;
 }

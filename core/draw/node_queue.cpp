@@ -1,5 +1,6 @@
 #include "core/draw/node_queue.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sightline {
@@ -8,7 +9,7 @@ double squaredDistance(const Camera& camera, const AxisBox& box) {
   double sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const double eye = camera.eye[axis];
-    const double away = std::fmax(std::fmax(box.low[axis] - eye, eye - box.high[axis]), 0.0);
+    const double away = std::max(std::max(box.low[axis] - eye, eye - box.high[axis]), 0.0);
     sum += away * away;
   }
   return sum;
