@@ -91,7 +91,7 @@ void ChcPlusTraversal::handleFirst() {
 void ChcPlusTraversal::visit(uint32_t index) {
   ++frame_.counts.node_visits;
   const BoxNode& node = tree_.nodes[index];
-  if (frame_.guard().frustum().sideOf(node.box) == FrustumSide::outside) return;
+  if (!states_.mayShow(index, frame_.guard().frustum())) return;
   const bool was_visible = states_.visit(index, number_);
   if (!frame_.guard().grown(node.box)) {
     if (was_visible) {

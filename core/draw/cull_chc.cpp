@@ -50,7 +50,7 @@ class ChcTraversal {
   void visit(uint32_t index) {
     ++frame_.counts.node_visits;
     const BoxNode& node = tree_.nodes[index];
-    if (frame_.guard().frustum().sideOf(node.box) == FrustumSide::outside) return;
+    if (!states_.mayShow(index, frame_.guard().frustum())) return;
     const bool was_visible = states_.visit(index, number_);
     const auto grown = frame_.guard().grown(node.box);
     if (!grown) {
