@@ -250,6 +250,7 @@ void runStrip(const StripArguments& arguments) {
       std::array{arguments.out},
       std::array{arguments.scene, outside ? std::filesystem::path() : std::filesystem::path(arguments.from)});
   requireNew(arguments.out, arguments.strip.overwrite);
+  requireStrippable(arguments.scene, arguments.out);
   SceneLoadOptions load = arguments.load;
   load.faces = true;
   Session session(loadScene(arguments.scene, load), sessionOf(arguments));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -237,11 +238,28 @@ void sayPartition(const WalkCommand& command, const Scene& scene, const Drawable
   }
 }
 
+/// Writes all that can be written; then throws what stood in the way of the first that could not. tracer: for
+/// pictures.
 void saveResults(const WalkCommand& command, const TextOutputs& outputs, const WalkReport& report,
-                 const WalkPictures& pictures) {
-  if (!command.csv.empty()) outputs.save(walkCsv(report), command.csv);
-  if (!command.report.empty()) outputs.save(jsonText(walkJson(report)), command.report);
-  if (!command.html.empty()) outputs.save(walkPage(report, pictures, commandLine()).html(), command.html);
+                 const WalkScene& walk, Tracer* tracer) {
+  std::exception_ptr failed;
+  const auto attempt = [&](const auto& save) {
+    try {
+      save();
+    } catch (const Error&) {
+      if (!failed) failed = std::current_exception();
+    }
+  };
+  WalkPictures pictures;
+  if (!command.csv.empty()) attempt([&] { outputs.save(walkCsv(report), command.csv); });
+  if (!command.report.empty()) attempt([&] { outputs.save(jsonText(walkJson(report)), command.report); });
+  if (!command.pictures.empty() && report.replay.complete) {
+    attempt([&] { pictures = drawPictures(command, walk, *tracer, report); });
+  }
+  if (!command.html.empty()) {
+    attempt([&] { outputs.save(walkPage(report, pictures, commandLine()).html(), command.html); });
+  }
+  if (failed) std::rethrow_exception(failed);
 }
 
 /// How it ends: an error, exit code 3, or all is well.
@@ -296,7 +314,6 @@ void run(const WalkCommand& command) {
   report.frames = walkFrames(command, pvs ? &*pvs : nullptr, scene, boundsOf(draw.drawables), size, report);
   if (!command.pictures.empty()) {
     makeFolder(command.pictures);
-    removeOldWalkPictures(command.pictures);
     report.options.shown_frames = framesToShow(report.frames);
   }
   const auto start = std::chrono::steady_clock::now();
@@ -319,6 +336,7 @@ void run(const WalkCommand& command) {
     tracer = makeTracer(command.tracer, scene, *bvh);
     if (traces) report.tracer = tracer->info().id;
   }
+  if (!command.pictures.empty()) removeOldWalkPictures(command.pictures);
   StopSignal stop;
   StatusLine status;
   ReplayHooks hooks{
@@ -329,10 +347,7 @@ void run(const WalkCommand& command) {
       replayWalk(*device, walk, report.frames, methods, report.options, tracer.get(), clock, hooks);
   status.end();
   std::fputs(walkTable(report).c_str(), stdout);
-  const WalkPictures pictures = command.pictures.empty() || !report.replay.complete
-                                    ? WalkPictures{}
-                                    : drawPictures(command, walk, *tracer, report);
-  saveResults(command, outputs, report, pictures);
+  saveResults(command, outputs, report, walk, tracer.get());
   concludeWalk(command, report, stop);
 }
 

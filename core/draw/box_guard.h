@@ -16,6 +16,9 @@ namespace sightline {
 ///   about 2^-22 of the greatest (the nearest) that a face has, which far away is more than places are known
 ///   to. That is what a triangle may lose and a box, up to twice as near, may gain.
 ///
+/// None of this bounds a triangle narrower than a hundredth of a pixel, of which a device may take the depth at
+/// a place beside it, off all of its corners (docs/walk.md).
+///
 /// So whatever in the box covers a pixel of an image lies, there, behind the grown box's faces, or on them.
 /// Boxes in a box grow to boxes in the grown one.
 class BoxGuard {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <string_view>
 
 #include "core/base/error.h"
 #include "core/formats/scene_format.h"
@@ -13,12 +15,21 @@
 namespace sightline {
 namespace {
 
-Stripped strip(const StripInput& input) {
-  const std::string name = input.file.string();
-  if (fromUtf16(input.bytes)) {
-    throw Error(fmt::format("{}: is UTF-16, which is not written; save it as UTF-8 first", name));
+/// Throws Error where files of the kind are not written.
+SceneFormat writtenFormat(std::string_view bytes, const std::filesystem::path& file) {
+  if (fromUtf16(bytes)) {
+    throw Error(fmt::format("{}: is UTF-16, which is not written; save it as UTF-8 first", file.string()));
   }
-  switch (formatOf(input.bytes, input.file)) {
+  const SceneFormat format = formatOf(bytes, file);
+  if (format == SceneFormat::kB3dm) {
+    throw Error(
+        fmt::format("{}: is a 3D Tile, which is not written; take the glTF out of it first", file.string()));
+  }
+  return format;
+}
+
+Stripped strip(const StripInput& input) {
+  switch (writtenFormat(input.bytes, input.file)) {
     case SceneFormat::kObj:
       return stripObj(input);
     case SceneFormat::kGltf:
@@ -29,7 +40,7 @@ Stripped strip(const StripInput& input) {
     case SceneFormat::kB3dm:
       break;
   }
-  throw Error(fmt::format("{}: is a 3D Tile, which is not written; take the glTF out of it first", name));
+  throw std::logic_error("a kind of scene file that is not written");
 }
 
 void refuseOtherKind(const std::filesystem::path& file, const std::filesystem::path& out) {
@@ -41,6 +52,12 @@ void refuseOtherKind(const std::filesystem::path& file, const std::filesystem::p
 }
 
 }  // namespace
+
+void requireStrippable(const std::filesystem::path& file, const std::filesystem::path& out) {
+  refuseOtherKind(file, out);
+  const FileBytes bytes = readFile(file);
+  writtenFormat(bytes.view(), file);
+}
 
 std::vector<bool> keptFaces(const StripInput& input, StripReport& report) {
   const std::vector<uint32_t>& faces = input.scene.faces;

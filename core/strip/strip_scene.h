@@ -30,6 +30,10 @@ struct StripReport {
   std::vector<std::string> notes;              ///< a line each: what was not touched, and why
 };
 
+/// Throws Error where stripScene would for the kinds of both files alone: another kind of output, or a scene
+/// of a kind that is not written. For before the work.
+void requireStrippable(const std::filesystem::path& file, const std::filesystem::path& out);
+
 /// Writes the scene file `file` without the triangles that are not in `seen` (by id) to `out`, a file of the
 /// same kind. What stays, stays in its order, and all else of the file byte for byte:
 /// - glTF: new lists of indices for the primitives that lose triangles; strips and fans among them become

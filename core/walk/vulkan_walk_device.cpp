@@ -178,6 +178,9 @@ class VulkanWalkDevice : public WalkDevice {
   bool timesGpu() const override { return true; }
   std::string whyNot(const std::string& method) const override {
     if (!walkMethod(method).on_gpu) return "";
+    if (gpuMethod(method) == GpuMethod::hizMeshlets && drawing_.mesh().hasSides()) {
+      return "meshlets do not know triangles that only their front shows, which the scene has; take hiz";
+    }
     return whyNotMethod(drawing_.context().abilities(), gpuMethod(method));
   }
   std::unique_ptr<WalkPlayer> play(const std::string& method, const WalkMethodOptions& options) override {

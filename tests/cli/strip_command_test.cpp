@@ -101,8 +101,9 @@ TEST(StripCommand, SaysWhatIsWrong) {
   const BoxInBox files;
   const std::string scene = files / "a.glb";
   expectRun("strip " + scene + " -o " + scene + " --overwrite" + kQuick, 2, {"a.glb"});
-  expectRun("strip " + scene + " -o " + (files / "b.obj") + kQuick, 2,
-            {"must end with .glb, as the scene does"});
+  const test::ProgramRun other = expectRun("strip " + scene + " -o " + (files / "b.obj") + kQuick, 2,
+                                           {"must end with .glb, as the scene does"});
+  EXPECT_EQ(other.output.find("triangles"), std::string::npos) << "refused before the work: " << other.output;
   expectRun("strip " + scene + " -o " + (files / "b.glb") + " --from no.json" + kQuick, 1,
             {"no.json: cannot open"});
   expectRun("strip " + scene + " -o -" + kQuick, 2, {"standard output"});

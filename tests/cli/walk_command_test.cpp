@@ -61,6 +61,23 @@ TEST_F(WalkCommandTest, WritesReportTablePageAndPictures) {
   EXPECT_FALSE(std::filesystem::exists(at("pics/drawn-opti-chc++-frame-15.png")));
 }
 
+TEST_F(WalkCommandTest, LosesNothingThatItHasFoundOrDrawn) {
+  // A folder where a picture should go: the report is written all the same.
+  std::filesystem::create_directories(at("p/drawn-vfc-frame-15.png"));
+  const std::string outputs =
+      " --report " + at("r.json") + " --csv " + at("r.csv") + " --pictures " + at("p");
+  const std::string vfc = walk("--methods vfc --check none" + outputs);
+  expectRun(vfc, 1, {"drawn-vfc-frame-15.png"});
+  EXPECT_TRUE(json::parse(readText(at("r.json")))["complete"]);
+  EXPECT_TRUE(std::filesystem::exists(at("r.csv")));
+  // A run that cannot begin leaves the pictures of the last one.
+  std::filesystem::remove_all(at("p"));
+  expectRun(vfc, 0, {"vfc"});
+  ASSERT_TRUE(std::filesystem::exists(at("p/drawn-vfc-frame-15.png")));
+  expectRun(walk("--methods hiz --pictures " + at("p")), 1, {"hiz cannot run"});
+  EXPECT_TRUE(std::filesystem::exists(at("p/drawn-vfc-frame-15.png")));
+}
+
 TEST_F(WalkCommandTest, ReplaysSetsAndViewsOfACell) {
   expectRun("cells " + at("c.glb") + " -o " + at("cells.json") + " --walk " + at("w.json") + " --length 60",
             0, {});
