@@ -65,6 +65,20 @@ void destroyPipeline(const VulkanContext& context, VkPipeline pipeline) {
   context.api().vkDestroyPipeline(context.device(), pipeline, nullptr);
 }
 
+VulkanHandle<VkPipeline> computePipeline(const VulkanContext& context, const std::string& name,
+                                         VkPipelineLayout layout, const VkSpecializationInfo* constants) {
+  const VulkanHandle<VkShaderModule> module = shaderModule(context, name);
+  auto info = vkStruct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
+  info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
+  info.stage.pSpecializationInfo = constants;
+  info.layout = layout;
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  checkVk(
+      context.api().vkCreateComputePipelines(context.device(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline),
+      ("vkCreateComputePipelines " + name).c_str());
+  return {context, pipeline, destroyPipeline};
+}
+
 VulkanStage VulkanStage::compute(const VulkanContext& context, const std::string& name, uint32_t group_size) {
   VulkanStage stage;
   stage.context_ = &context;
@@ -93,18 +107,9 @@ VulkanStage VulkanStage::rays(const VulkanContext& context, const std::string& g
 }
 
 void VulkanStage::createPipeline(const std::string& name) const {
-  const VulkanHandle<VkShaderModule> module = shaderModule(*context_, name);
   const VkSpecializationMapEntry entry{0, 0, sizeof group_size_};
   const VkSpecializationInfo constants{1, &entry, sizeof group_size_, &group_size_};
-  auto info = vkStruct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-  info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
-  info.stage.pSpecializationInfo = &constants;
-  info.layout = layout_.get();
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  checkVk(context_->api().vkCreateComputePipelines(context_->device(), VK_NULL_HANDLE, 1, &info, nullptr,
-                                                   &pipeline),
-          ("vkCreateComputePipelines " + name).c_str());
-  pipeline_ = {*context_, pipeline, destroyPipeline};
+  pipeline_ = computePipeline(*context_, name, layout_.get(), &constants);
 }
 
 void VulkanStage::createRayPipeline(const std::string& generation_name, const std::string& miss_name,

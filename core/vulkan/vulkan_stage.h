@@ -16,6 +16,10 @@ VkPipelineShaderStageCreateInfo stageInfo(VkShaderStageFlagBits stage, VkShaderM
 VulkanHandle<VkPipelineLayout> pushLayout(const VulkanContext& context, VkShaderStageFlags stages,
                                           uint32_t bytes = sizeof(VulkanPush));
 void destroyPipeline(const VulkanContext& context, VkPipeline pipeline);
+/// A compute shader of this name as a pipeline. constants: its specialisation, or nullptr. Throws Error.
+VulkanHandle<VkPipeline> computePipeline(const VulkanContext& context, const std::string& name,
+                                         VkPipelineLayout layout,
+                                         const VkSpecializationInfo* constants = nullptr);
 
 /// A program that runs one work item an invocation: a tracing stage, or a compute shader over a list.
 class VulkanStage {

@@ -70,17 +70,7 @@ void DrawPrograms::run(VkCommandBuffer commands, const char* name, const DrawPus
 
 VkPipeline DrawPrograms::compute(const char* name) {
   VulkanHandle<VkPipeline>& made = compute_[name];
-  if (made.get() == VK_NULL_HANDLE) {
-    const VulkanHandle<VkShaderModule> module = shaderModule(context_, name);
-    auto info = vkStruct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
-    info.stage = stageInfo(VK_SHADER_STAGE_COMPUTE_BIT, module.get());
-    info.layout = layout_.get();
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    checkVk(context_.api().vkCreateComputePipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr,
-                                                    &pipeline),
-            "vkCreateComputePipelines");
-    made = {context_, pipeline, destroyPipeline};
-  }
+  if (made.get() == VK_NULL_HANDLE) made = computePipeline(context_, name, layout_.get());
   return made.get();
 }
 
