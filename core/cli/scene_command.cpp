@@ -29,7 +29,7 @@ struct SceneArguments {
   uint64_t triangles = 2'000'000;
   uint64_t seed = 1;
   uint32_t kinds = 0;  ///< 0: nothing repeats
-  bool alpha = false;
+  SceneExtras extras;
   bool overwrite = false;
 };
 
@@ -38,14 +38,14 @@ void run(const SceneArguments& arguments) {
   requireSeparate(files, {});
   for (const std::filesystem::path& file : files) requireNew(file, arguments.overwrite);
   const TextOutputs outputs({files.data(), 1});
-  const auto& [name, output, cells_file, walk_file, frames, triangles, seed, kinds, alpha, overwrite] =
+  const auto& [name, output, cells_file, walk_file, frames, triangles, seed, kinds, extras, overwrite] =
       arguments;
   const std::vector<ViewCell> cells =
       kinds > 0 ? generateRepeatedCells(name, triangles, seed, kinds) : generateCells(name, triangles, seed);
   const CameraPath walk =
       walk_file.empty() ? CameraPath{} : generateWalk(name, triangles, seed, frames, kinds);
-  const Scene scene = kinds > 0 ? generateRepeated(name, triangles, seed, kinds)
-                                : generateScene(name, triangles, seed, alpha);
+  const Scene scene = kinds > 0 ? generateRepeated(name, triangles, seed, kinds, extras.closed)
+                                : generateScene(name, triangles, seed, extras);
   if (isStandardOutput(arguments.output)) {
     writeObj(scene, "standard output", [&](std::string_view piece) { outputs.write(piece); });
   } else {
@@ -97,7 +97,7 @@ std::string footer() {
 void addSceneCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("scene", "Generate a scene, and view cells that fit it");
   const auto arguments = std::make_shared<SceneArguments>();
-  command->add_option("NAME", arguments->name, "city, canyon, plant or bistro")
+  command->add_option("NAME", arguments->name, "city, canyon, plant, bistro or scan")
       ->required()
       ->check(oneOf(sceneNames()));
   command
@@ -105,17 +105,23 @@ void addSceneCommand(CLI::App& app) {
                    "File to write: .obj or .glb; - writes OBJ to standard output")
       ->required();
   command
-      ->add_option(
-          "--triangles", arguments->triangles,
-          "How many, at most: 1000 to 20000000, with --kinds to 1000000000. Extent and detail grow with it")
+      ->add_option("--triangles", arguments->triangles,
+                   "How many, at most: 1000 to 20000000, of the scan to 200000000, with --kinds to "
+                   "1000000000. Extent and "
+                   "detail grow with it")
       ->transform(wholeNumber())
       ->capture_default_str();
   command->add_option("--seed", arguments->seed, "Another seed, another scene of the kind")
       ->transform(wholeNumber())
       ->capture_default_str();
   CLI::Option* const alpha = command->add_flag(
-      "--alpha", arguments->alpha,
+      "--alpha", arguments->extras.alpha,
       "City and bistro: leaves with holes, and panes and bottles of glass, as a .glb holds them");
+  command
+      ->add_flag("--closed", arguments->extras.closed,
+                 "City: houses, pavements and the road are solid, each edge that of two triangles")
+      ->excludes(alpha);
+  command->add_flag("--holes", arguments->extras.holes, "Scan: open in some places, as scans are");
   command
       ->add_option("--kinds", arguments->kinds,
                    "City and plant: of so many different blocks or bays, which repeat. They are stored once "
