@@ -275,11 +275,11 @@ TEST_P(SurfacesOn, MakeTheSameSets) {
 }
 
 /// What is not opaque in a scene.
-enum class Kind { kHoles, kGlass, kSides, kDoors, kAll };
+enum class Kind { kHoles, kGlass, kSides, kDoors };
 
-/// A closed room of many panels that stand in each other's way, a part of them of the kind.
+/// Panels that stand in each other's way, those that are not opaque all of the kind.
 SurfaceScene panels(Kind kind) {
-  SurfaceScene s = randomScene(19, 900);
+  SurfaceScene s = randomScene(19, 450);
   uint32_t of_kind = 0;
   for (uint32_t id = 0; id < s.scene.triangleCount(); ++id) {
     uint32_t& word = s.scene.surfaces.words[id];
@@ -290,13 +290,13 @@ SurfaceScene panels(Kind kind) {
     if (kind == Kind::kDoors) word = id % 50 < 20 ? kSurfaceGlass : 0u;  // whole objects
     of_kind += word != 0 ? 1 : 0;
   }
-  EXPECT_GT(of_kind, 200u);
+  EXPECT_GT(of_kind, 100u);
   return s;
 }
 
 class SurfaceKinds : public testing::TestWithParam<Kind> {};
 
-/// Of each kind a set of its own shaders, by both of the driver's ways and by ours: sets, witnesses'
+/// Each kind by both of the driver's ways and by ours: sets, witnesses'
 /// triangles, rays that miss, and images.
 TEST_P(SurfaceKinds, AreTheSameByPipelinesQueriesAndOurTree) {
   SL_SKIP_WITHOUT_VULKAN();
@@ -338,10 +338,10 @@ TEST_P(SurfaceKinds, AreTheSameByPipelinesQueriesAndOurTree) {
   EXPECT_EQ(pipelines.answers.glass.size() > 4'000u, glass);
 }
 
-constexpr const char* kKindNames[] = {"Holes", "Glass", "Sides", "Doors", "All"};
+constexpr const char* kKindNames[] = {"Holes", "Glass", "Sides", "Doors"};
 
 INSTANTIATE_TEST_SUITE_P(Of, SurfaceKinds,
-                         testing::Values(Kind::kHoles, Kind::kGlass, Kind::kSides, Kind::kDoors, Kind::kAll),
+                         testing::Values(Kind::kHoles, Kind::kGlass, Kind::kSides, Kind::kDoors),
                          [](const auto& its) { return kKindNames[size_t(its.param)]; });
 
 INSTANTIATE_TEST_SUITE_P(On, SurfacesOn, testing::ValuesIn(tracers()), [](const auto& name) {
