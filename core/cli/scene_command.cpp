@@ -33,6 +33,25 @@ struct SceneArguments {
   bool overwrite = false;
 };
 
+void printSize(const std::string& file, uint32_t triangles, uint64_t vertices, size_t objects,
+               const Bounds& bounds) {
+  const glm::vec3 size = bounds.high - bounds.low;
+  fmt::print("{}: {} triangles, {} vertices, {}, {:.0f} x {:.0f} x {:.0f} m\n", file, triangles, vertices,
+             counted(objects, "object"), size.x, size.y, size.z);
+}
+
+/// The files beside the scene that are asked for.
+void saveBeside(const SceneArguments& arguments, const std::vector<ViewCell>& cells, const CameraPath& walk) {
+  if (!arguments.cells.empty()) {
+    saveCells(cells, arguments.cells);
+    fmt::print("{}: {}\n", arguments.cells, counted(cells.size(), "view cell"));
+  }
+  if (!arguments.walk.empty()) {
+    saveText(walkText(walk, arguments.walk), arguments.walk);
+    fmt::print("{}: {}\n", arguments.walk, counted(walk.frames(), "frame"));
+  }
+}
+
 void run(const SceneArguments& arguments) {
   const std::array<std::filesystem::path, 3> files = {arguments.output, arguments.cells, arguments.walk};
   requireSeparate(files, {});
@@ -44,6 +63,12 @@ void run(const SceneArguments& arguments) {
       kinds > 0 ? generateRepeatedCells(name, triangles, seed, kinds) : generateCells(name, triangles, seed);
   const CameraPath walk =
       walk_file.empty() ? CameraPath{} : generateWalk(name, triangles, seed, frames, kinds);
+  if (name == "scan" && lowerExtension(arguments.output) == ".glb") {
+    const SceneStream scan = streamScan(triangles, seed, extras);
+    saveGlb(scan, arguments.output);
+    printSize(arguments.output, scan.triangleCount(), scan.vertices, scan.objects.size(), scan.bounds);
+    return saveBeside(arguments, cells, walk);
+  }
   const Scene scene = kinds > 0 ? generateRepeated(name, triangles, seed, kinds, extras.closed)
                                 : generateScene(name, triangles, seed, extras);
   if (isStandardOutput(arguments.output)) {
@@ -51,11 +76,8 @@ void run(const SceneArguments& arguments) {
   } else {
     saveScene(scene, arguments.output);
   }
-  const Bounds bounds = sceneBounds(scene);
-  const glm::vec3 size = bounds.high - bounds.low;
-  fmt::print("{}: {} triangles, {} vertices, {}, {:.0f} x {:.0f} x {:.0f} m\n", arguments.output,
-             scene.triangleCount(), scene.vertexCount(), counted(scene.objects.size(), "object"), size.x,
-             size.y, size.z);
+  printSize(arguments.output, scene.triangleCount(), scene.vertexCount(), scene.objects.size(),
+            sceneBounds(scene));
   if (!scene.surfaces.empty()) {
     const SurfaceCounts counts = countSurfaces(scene.surfaces);
     fmt::print("{}: {} triangles have holes, {} are glass\n", arguments.output, counts.masked, counts.glass);
@@ -64,14 +86,7 @@ void run(const SceneArguments& arguments) {
     fmt::print("{}: {} triangles are stored, in {} of {} different ones\n", arguments.output,
                scene.triangles.size(), counted(scene.instances.size(), "instance"), scene.meshes.size());
   }
-  if (!cells_file.empty()) {
-    saveCells(cells, cells_file);
-    fmt::print("{}: {}\n", cells_file, counted(cells.size(), "view cell"));
-  }
-  if (!walk_file.empty()) {
-    saveText(walkText(walk, walk_file), walk_file);
-    fmt::print("{}: {}\n", walk_file, counted(walk.frames(), "frame"));
-  }
+  saveBeside(arguments, cells, walk);
 }
 
 std::vector<std::string> sceneNames() {

@@ -81,8 +81,10 @@ const std::vector<GeneratedSceneInfo>& generatedScenes() {
   return infos;
 }
 
-Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed, const SceneExtras& extras) {
-  const Generator& generator = find(name, triangles);
+namespace {
+
+/// Of a scene that find() knows.
+void checkExtras(const std::string& name, const SceneExtras& extras) {
   if (extras.alpha && name != "city" && name != "bistro") {
     throw Error("the scene '" + name + "' has neither leaves nor panes: city and bistro have", kExitUsage);
   }
@@ -97,7 +99,35 @@ Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed, 
   if (extras.holes && name != "scan") {
     throw Error("the scene '" + name + "' has no holes of a scanner: scan has", kExitUsage);
   }
-  if (generator.parts == nullptr) return scanScene(triangles, seed, extras.holes);
+}
+
+/// All of a stream.
+Scene collect(const SceneStream& stream) {
+  Scene scene;
+  scene.objects = stream.objects;
+  scene.positions.reserve(stream.vertices);
+  scene.triangles.reserve(stream.triangleCount());
+  stream.positions([&](std::span<const glm::vec3> some) {
+    scene.positions.insert(scene.positions.end(), some.begin(), some.end());
+  });
+  stream.triangles([&](std::span<const glm::uvec3> some) {
+    scene.triangles.insert(scene.triangles.end(), some.begin(), some.end());
+  });
+  return scene;
+}
+
+}  // namespace
+
+SceneStream streamScan(uint64_t triangles, uint64_t seed, const SceneExtras& extras) {
+  find("scan", triangles);
+  checkExtras("scan", extras);
+  return scanStream(triangles, seed, extras.holes);
+}
+
+Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed, const SceneExtras& extras) {
+  const Generator& generator = find(name, triangles);
+  checkExtras(name, extras);
+  if (generator.parts == nullptr) return collect(scanStream(triangles, seed, extras.holes));
   return assembleScene(generator.parts(triangles, seed), triangles, seed, {extras.alpha, extras.closed});
 }
 

@@ -6,6 +6,7 @@
 #include "core/cell/view_cell.h"
 #include "core/path/camera_path.h"
 #include "core/scene/scene.h"
+#include "core/scene/scene_stream.h"
 
 namespace sightline {
 
@@ -49,6 +50,10 @@ struct SceneExtras {
 /// ("scan": kMaxScanTriangles), and for extras that the scene does not have.
 Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed,
                     const SceneExtras& extras = {});
+
+/// The scan that generateScene makes of the same arguments, in pieces: 200 million triangles take no more
+/// memory than a million. Throws as generateScene.
+SceneStream streamScan(uint64_t triangles, uint64_t seed, const SceneExtras& extras = {});
 
 /// Generates "city" or "plant" of at most so many kinds of modules (blocks of houses; bays of a plant, half
 /// of them mirrored, and aisles), 1 .. kMaxKinds, each an instance: the count is of all, whatever is stored

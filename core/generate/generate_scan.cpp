@@ -3,6 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
+#include <memory>
 
 #include "core/cell/rotation.h"
 #include "core/generate/scan_surface.h"
@@ -11,32 +13,59 @@
 
 namespace sightline {
 
-Scene scanScene(uint64_t triangles, uint64_t seed, bool holes) {
-  const ScanSurface surface(triangles, seed, holes);
+namespace {
+
+constexpr uint32_t kVerticesATime = 1 << 20;
+constexpr size_t kPanelsATime = 16;
+
+/// Calls take with those vertices, in order and in pieces.
+void makePositions(const ScanSurface& surface, const std::function<void(std::span<const glm::vec3>)>& take) {
+  std::vector<glm::vec3> positions;
+  for (uint32_t first = 0; first < surface.vertexCount(); first += kVerticesATime) {
+    positions.resize(std::min(kVerticesATime, surface.vertexCount() - first));
+    tbb::parallel_for(tbb::blocked_range<uint32_t>(0, uint32_t(positions.size()), 4096),
+                      [&](const auto& range) {
+                        for (uint32_t i = range.begin(); i < range.end(); ++i)
+                          positions[i] = surface.position(first + i);
+                      });
+    take(positions);
+  }
+}
+
+void makeTriangles(const ScanSurface& surface, const std::function<void(std::span<const glm::uvec3>)>& take) {
   const std::vector<ScanSurface::Panel>& panels = surface.panels();
+  std::vector<std::vector<glm::uvec3>> some(kPanelsATime);
+  for (size_t first = 0; first < panels.size(); first += kPanelsATime) {
+    const size_t count = std::min(kPanelsATime, panels.size() - first);
+    tbb::parallel_for(size_t(0), count, [&](size_t i) {
+      some[i].clear();
+      surface.addTriangles(panels[first + i], some[i]);
+    });
+    for (size_t i = 0; i < count; ++i) take(some[i]);
+  }
+}
+
+}  // namespace
+
+SceneStream scanStream(uint64_t triangles, uint64_t seed, bool holes) {
+  const auto surface = std::make_shared<const ScanSurface>(triangles, seed, holes);
+  const std::vector<ScanSurface::Panel>& panels = surface->panels();
   std::vector<uint32_t> counts(panels.size());
   tbb::parallel_for(size_t(0), panels.size(),
-                    [&](size_t i) { counts[i] = surface.triangleCount(panels[i]); });
-  Scene scene;
-  uint32_t all = 0;
-  std::vector<uint32_t> first;
+                    [&](size_t i) { counts[i] = surface->triangleCount(panels[i]); });
+  SceneStream stream;
   for (size_t i = 0; i < panels.size(); ++i) {
-    first.push_back(all);
-    if (counts[i] != 0) scene.objects.push_back({panels[i].name, all, counts[i]});
-    all += counts[i];
+    if (counts[i] != 0) stream.objects.push_back({panels[i].name, stream.triangleCount(), counts[i]});
   }
-  scene.triangles.resize(all);
-  tbb::parallel_for(size_t(0), panels.size(), [&](size_t i) {
-    std::vector<glm::uvec3> own;
-    own.reserve(counts[i]);
-    surface.addTriangles(panels[i], own);
-    std::ranges::copy(own, scene.triangles.begin() + first[i]);
+  stream.vertices = surface->vertexCount();
+  stream.bounds = {surface->position(0), surface->position(0)};
+  makePositions(*surface, [&](std::span<const glm::vec3> some) {
+    for (const glm::vec3& p : some)
+      stream.bounds = {glm::min(stream.bounds.low, p), glm::max(stream.bounds.high, p)};
   });
-  scene.positions.resize(surface.vertexCount());
-  tbb::parallel_for(tbb::blocked_range<uint32_t>(0, surface.vertexCount(), 4096), [&](const auto& range) {
-    for (uint32_t v = range.begin(); v < range.end(); ++v) scene.positions[v] = surface.position(v);
-  });
-  return scene;
+  stream.positions = [surface](const auto& take) { makePositions(*surface, take); };
+  stream.triangles = [surface](const auto& take) { makeTriangles(*surface, take); };
+  return stream;
 }
 
 // Free space: farther than 1.5 m from the axis above the plinth, and above 6 m.

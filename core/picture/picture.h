@@ -49,6 +49,12 @@ struct Picture {
 Picture renderOutside(const TraceRays& trace, const Scene& scene, const CellPvs& pvs,
                       const PictureOptions& options = {}, const TraceGlass& glass = {});
 
+/// A scene whole, obliquely from above, each triangle in its colour (linear light). options.cut has no
+/// effect. Throws Error.
+Picture renderWhole(const TraceRays& trace, const Scene& scene,
+                    const std::function<glm::vec3(uint32_t triangle)>& color,
+                    const PictureOptions& options = {});
+
 /// What is seen from the cell, on one sheet of three panoramas: the cell's centre above, two points of its
 /// surface below. A box looks all around (360 by 180 degrees), a flat cell along its normal (180 by 90).
 /// Pixels that show a triangle outside the PVS, glass that is seen through too, are (255, 0, 0), nothing else

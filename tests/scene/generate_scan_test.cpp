@@ -6,6 +6,8 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/formats/load_scene.h"
+#include "core/formats/save_scene.h"
 #include "core/generate/generate.h"
 #include "core/generate/scan_surface.h"
 #include "tests/scene/edge_counts.h"
@@ -103,6 +105,18 @@ INSTANTIATE_TEST_SUITE_P(Sizes, GeneratedScan,
 
 TEST(ScanScene, IsTheSameFromEveryCompiler) {
   EXPECT_EQ(hashScene(generateScene("scan", 300'000, 1, {.holes = true})), 2901333236127052580u);
+}
+
+TEST(ScanScene, StreamsTheSameFile) {
+  const test::Folder folder;
+  for (const bool holes : {false, true}) {
+    const SceneExtras extras{.holes = holes};
+    const Scene scene = generateScene("scan", 1'300'000, 5, extras);
+    saveScene(scene, folder / "a.glb");
+    saveGlb(streamScan(1'300'000, 5, extras), folder / "b.glb");
+    EXPECT_TRUE(test::readText(folder / "a.glb") == test::readText(folder / "b.glb"));
+    EXPECT_EQ(hashScene(loadScene(folder / "b.glb")), hashScene(scene));
+  }
 }
 
 TEST(ScanScene, MoreTrianglesThanOtherScenes) {
