@@ -111,14 +111,14 @@ TEST_P(VoxelFaces, BoundTheSet) {
   double volume = 0, area = 0;
   for (const glm::uvec3& t : scene.triangles) {
     const glm::dvec3 a = scene.positions[t.x], b = scene.positions[t.y], c = scene.positions[t.z];
-    volume += glm::dot(a, glm::cross(b, c)) / 6;
+    volume += glm::dot(a, glm::cross(b, c));
     area += glm::length(glm::cross(b - a, c - a)) / 2;
     for (int k = 0; k < 3; ++k) {
       ++edges[{t[k], t[(k + 1) % 3]}];
       --edges[{t[(k + 1) % 3], t[k]}];
     }
   }
-  EXPECT_EQ(volume, double(places.size()) / 64) << "not that of the voxels: inside out, or open";
+  EXPECT_EQ(volume, 6 * double(places.size()) / 64) << "not that of the voxels: inside out, or open";
   EXPECT_EQ(area, double(sidesOf(places).size()) / 16);
   if (merging == FaceMerging::kNone) {
     for (const auto& [edge, sum] : edges) ASSERT_EQ(sum, 0) << "open";
