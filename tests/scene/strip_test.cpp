@@ -481,7 +481,8 @@ TEST(StripGltf, CompressedViewsStayCompressed) {
       const StrippedText left = stripText("a.glb", glb, {false, true}, {.compact = compact});
       EXPECT_EQ(turned(cornersOf(left.scene)), turned(cornersOf(scene, {false, true})));
       EXPECT_EQ(left.scene.vertexCount(), compact ? 3u : 4u);
-      for (const json& view : documentOf(left.text)["bufferViews"]) {
+      const json document = documentOf(left.text);
+      for (const json& view : document["bufferViews"]) {
         EXPECT_TRUE(view.contains("extensions")) << view;
       }
       EXPECT_LE(left.text.size(), glb.size() + 64);  // of numbers in the JSON
