@@ -203,11 +203,14 @@ class TraceStatus {
   RayProgress of(size_t cell) {
     return [this, cell](uint64_t rays) {
       status_.show([&] {
-        return fmt::format("{}: cell {} of {}, {} rays", what_, cell + 1, cells_, shortCount(rays));
+        return fmt::format("{}: cell {} of {}, {} rays{}", what_, cell + 1, cells_, shortCount(rays),
+                           so_far_);
       });
       return !stopped();
     };
   }
+  /// What the cells before gave, for the end of the line.
+  void say(std::string so_far) { so_far_ = std::move(so_far); }
   bool stopped() const { return stop_.exitCode() != 0; }
   /// Takes the line away.
   void wipe() { status_.end(); }
@@ -220,6 +223,7 @@ class TraceStatus {
  private:
   const char* what_;
   size_t cells_;
+  std::string so_far_;
   StopSignal stop_;
   StatusLine status_;
 };
@@ -325,6 +329,7 @@ void check(const StripArguments& arguments, Viewed& viewed, const StripReport& r
       sum.lost += found.lost;
       sum.ties += found.ties;
       rays += of_cell;
+      status.say(fmt::format("; before: {} of {} meet what went", sum.lost, shortCount(rays)));
     }
     status.wipe();
     fmt::print(

@@ -340,7 +340,7 @@ class GltfLoader {
       throw Error(
           fmt::format("{}: accessors[{}]: indices need SCALAR of 5121, 5123 or 5125", name_, accessor));
     }
-    if (!indices.view) {
+    if (!indices.view && !indices.sparse) {
       throw Error(fmt::format("{}: accessors[{}]: indices without a bufferView", name_, accessor));
     }
     GltfReader(document_, data_, accessor, name_);
