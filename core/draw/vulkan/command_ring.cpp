@@ -140,7 +140,7 @@ bool CommandRing::arrived(Entry& entry, uint64_t serial, Answers& answers, uint3
   const double start = now();  // some drivers wait here, though asked not to
   const VkResult code = context_.api().vkGetQueryPoolResults(context_.device(), entry.queries.get(), query, 1,
                                                              sizeof samples, &samples, sizeof samples, 0);
-  cpu_.wait += now() - start;
+  cpu_.look += now() - start;
   if (code == VK_NOT_READY) return false;
   checkVk(code, "vkGetQueryPoolResults");
   answers[query] = samples > 0;

@@ -23,7 +23,9 @@ struct GpuTimes {
 /// The processor's time in a frame in milliseconds, without what the method itself takes; all 0 without a
 /// clock.
 struct CpuTimes {
-  double record = 0, submit = 0, wait = 0;
+  double record = 0, submit = 0;
+  double look = 0;  ///< to find out whether answers have arrived
+  double wait = 0;  ///< for answers that had not
 };
 
 /// Milliseconds from whenever; empty: no time is measured.
