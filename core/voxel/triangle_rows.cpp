@@ -1,0 +1,159 @@
+#include "core/voxel/triangle_rows.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/voxel/exact_sign.h"
+
+namespace sightline {
+namespace {
+
+// Of rounding in a half space's factors, rest and value together, in units of the sum of what is added: each
+// of some ten operations gives at most 2^-53 of it.
+constexpr double kRounding = 32 * 0x1p-53;
+
+int signOfStep(double from, double to) {
+  return (to > from) - (to < from);
+}
+
+ExactPoint pointOf(const glm::dvec3& p) {
+  return {p.x, p.y, p.z};
+}
+
+}  // namespace
+
+TriangleRows::TriangleRows(const std::array<glm::dvec3, 3>& corners) : corners_(corners) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = std::min({corners[0][axis], corners[1][axis], corners[2][axis]});
+    const double high = std::max({corners[0][axis], corners[1][axis], corners[2][axis]});
+    box_.low[axis] = ceiling(low) - 1;  // closed: cube i meets what is at i + 1
+    box_.high[axis] = -ceiling(-high);
+  }
+}
+
+void TriangleRows::prepare() {
+  is_ready_ = true;
+  const auto& p = corners_;
+  const auto orientation = [&](int u, int v) {
+    return orient2d(p[0][u], p[0][v], p[1][u], p[1][v], p[2][u], p[2][v]);
+  };
+  const glm::ivec3 normal(orientation(1, 2), orientation(2, 0), orientation(0, 1));
+  addEdges(1, 2, normal.x);
+  addEdges(0, 2, -normal.y);
+  addEdges(0, 1, normal.z);
+  addPlane(normal);
+}
+
+// Seen along the third axis, the triangle is on the inner side of each of its edges; if it is a segment, the
+// square must have a corner on both sides of it.
+void TriangleRows::addEdges(int u, int v, int orientation) {
+  if (orientation != 0) {
+    for (int edge = 0; edge < 3; ++edge) addEdge(u, v, edge, orientation);
+    return;
+  }
+  int longest = 0;
+  double length = -1;
+  for (int edge = 0; edge < 3; ++edge) {
+    const glm::dvec3 step = corners_[size_t((edge + 1) % 3)] - corners_[size_t(edge)];
+    const double size = std::abs(step[u]) + std::abs(step[v]);
+    if (size > length) {
+      longest = edge;
+      length = size;
+    }
+  }
+  addEdge(u, v, longest, 1);
+  addEdge(u, v, longest, -1);
+}
+
+void TriangleRows::addEdge(int u, int v, int edge, int side) {
+  const glm::dvec3 &p = corners_[size_t(edge)], &q = corners_[size_t((edge + 1) % 3)];
+  HalfSpace half;
+  half.u = u;
+  half.v = v;
+  half.edge = edge;
+  half.side = side;
+  half.rises[u] = -side * signOfStep(p[v], q[v]);
+  half.rises[v] = side * signOfStep(p[u], q[u]);
+  if (half.rises[u] == 0 || half.rises[v] == 0) return;  // along an axis: the box says the same
+  half.factor[u] = -side * (q[v] - p[v]);
+  half.factor[v] = side * (q[u] - p[u]);
+  const glm::dvec3 size = glm::dvec3(box_.high - box_.low) + 3.0;
+  half.tolerance =
+      kRounding * (std::abs(half.factor[u]) + std::abs(half.factor[v])) * std::max(size[u], size[v]);
+  for (const int axis : {u, v}) {
+    half.corner[axis] = half.rises[axis] > 0;
+    half.rest += half.factor[axis] * (double(half.corner[axis]) - (p[axis] - double(box_.low[axis])));
+  }
+  keep(half);
+}
+
+// The plane has a corner of the cube on both sides of it, or on it.
+void TriangleRows::addPlane(const glm::ivec3& signs) {
+  if ((signs.x != 0) + (signs.y != 0) + (signs.z != 0) < 2) return;  // none, or the box says the same
+  const glm::dvec3 u = corners_[1] - corners_[0], v = corners_[2] - corners_[0];
+  const glm::dvec3 plus(u.y * v.z, u.z * v.x, u.x * v.y), minus(u.z * v.y, u.x * v.z, u.y * v.x);
+  const glm::dvec3 normal = plus - minus, magnitude = glm::abs(plus) + glm::abs(minus);
+  const glm::dvec3 size = glm::dvec3(box_.high - box_.low) + 3.0;
+  for (const int side : {1, -1}) {
+    HalfSpace half;
+    half.side = side;
+    half.rises = side * signs;
+    half.factor = double(side) * normal;
+    half.tolerance =
+        kRounding * (magnitude.x + magnitude.y + magnitude.z) * std::max({size.x, size.y, size.z});
+    for (int axis = 0; axis < 3; ++axis) {
+      if (signs[axis] == 0) half.factor[axis] = 0;
+      half.corner[axis] = half.rises[axis] > 0;
+      half.rest +=
+          half.factor[axis] * (double(half.corner[axis]) - (corners_[0][axis] - double(box_.low[axis])));
+    }
+    keep(half);
+  }
+}
+
+void TriangleRows::keep(HalfSpace half) {
+  for (int axis = 0; axis < 2; ++axis) {
+    // A factor that rounding has turned says nothing: infinity sends each row to the search.
+    const bool is_sound = half.factor[axis] * half.rises[axis] > 0;
+    half.inverse[axis] = is_sound ? 1 / half.factor[axis] : std::numeric_limits<double>::infinity();
+  }
+  if (half.rises.x == 0) {
+    yz_[size_t(count_yz_++)] = half;
+  } else {
+    x_[size_t(count_x_++)] = half;
+  }
+}
+
+bool TriangleRows::holds(const HalfSpace& half, const glm::ivec3& voxel) const {
+  const glm::dvec3 corner(voxel + half.corner);
+  if (half.u < 0) {
+    return half.side *
+               orient3d(pointOf(corners_[0]), pointOf(corners_[1]), pointOf(corners_[2]), pointOf(corner)) >=
+           0;
+  }
+  const glm::dvec3 &p = corners_[size_t(half.edge)], &q = corners_[size_t((half.edge + 1) % 3)];
+  return half.side * orient2d(p[half.u], p[half.v], q[half.u], q[half.v], corner[half.u], corner[half.v]) >=
+         0;
+}
+
+// By halves: a half space holds from one voxel of the row on, or up to one.
+void TriangleRows::search(const HalfSpace& half, glm::ivec3 at, int axis, int& low, int& high) const {
+  const bool rises = half.rises[axis] > 0;
+  const auto holdsAt = [&](int place) {
+    at[axis] = place;
+    return holds(half, at);
+  };
+  int from = low,
+      to = high + 1;  // rises: the first that holds is in from .. to; else the first that does not
+  while (from < to) {
+    const int middle = from + (to - from) / 2;
+    if (holdsAt(middle) == rises) {
+      to = middle;
+    } else {
+      from = middle + 1;
+    }
+  }
+  (rises ? low : high) = rises ? from : from - 1;
+}
+
+}  // namespace sightline

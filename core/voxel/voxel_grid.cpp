@@ -1,0 +1,69 @@
+#include "core/voxel/voxel_grid.h"
+
+namespace sightline {
+namespace {
+
+uint64_t keyOf(const glm::ivec3& place) {
+  const auto part = [](int value) { return uint64_t(uint32_t(value) & 0x1fffff); };
+  return part(place.x) | part(place.y) << 21 | part(place.z) << 42;
+}
+
+}  // namespace
+
+VoxelLookup::VoxelLookup(const VoxelGrid& grid) : grid_(grid) {
+  places_.reserve(grid.blocks.size());
+  for (size_t i = 0; i < grid.blocks.size(); ++i) places_.emplace(keyOf(grid.blocks[i].place), uint32_t(i));
+}
+
+const VoxelBlock* VoxelLookup::block(const glm::ivec3& place) const {
+  const auto found = places_.find(keyOf(place));
+  return found == places_.end() ? nullptr : &grid_.blocks[found->second];
+}
+
+bool VoxelLookup::contains(const glm::ivec3& voxel) const {
+  const VoxelBlock* found = block({voxel.x >> 6, voxel.y >> 6, voxel.z >> 6});
+  if (found == nullptr) return false;
+  const glm::ivec3 in_block = voxel & 63;
+  const int place = (in_block.x >> 3) + 8 * (in_block.y >> 3) + 64 * (in_block.z >> 3);
+  const auto brick = std::lower_bound(found->bricks.begin(), found->bricks.end(), place,
+                                      [](const VoxelBrick& b, int wanted) { return b.place < wanted; });
+  return brick != found->bricks.end() && brick->place == place &&
+         brick->contains(in_block.x & 7, in_block.y & 7, in_block.z & 7);
+}
+
+std::vector<VoxelBrick> BlockBits::bricks() const {
+  std::vector<VoxelBrick> result;
+  for (int bz = 0; bz < 8; ++bz) {
+    for (int by = 0; by < 8; ++by) {
+      uint64_t any = 0;
+      for (int z = 0; z < 8; ++z) {
+        for (int y = 0; y < 8; ++y) any |= row(8 * by + y, 8 * bz + z);
+      }
+      for (int bx = 0; any != 0 && bx < 8; ++bx) {
+        if (((any >> (8 * bx)) & 0xff) == 0) continue;
+        VoxelBrick brick;
+        brick.place = uint16_t(bx + 8 * by + 64 * bz);
+        for (int z = 0; z < 8; ++z) {
+          for (int y = 0; y < 8; ++y) {
+            brick.bits[size_t(z)] |= ((row(8 * by + y, 8 * bz + z) >> (8 * bx)) & 0xff) << (8 * y);
+          }
+        }
+        result.push_back(brick);
+      }
+    }
+  }
+  return result;
+}
+
+void BlockBits::insert(std::span<const VoxelBrick> bricks) {
+  for (const VoxelBrick& brick : bricks) {
+    const int bx = brick.place & 7, by = (brick.place >> 3) & 7, bz = brick.place >> 6;
+    for (int z = 0; z < 8; ++z) {
+      for (int y = 0; y < 8; ++y) {
+        row(8 * by + y, 8 * bz + z) |= ((brick.bits[size_t(z)] >> (8 * y)) & 0xff) << (8 * bx);
+      }
+    }
+  }
+}
+
+}  // namespace sightline

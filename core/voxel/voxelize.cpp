@@ -1,0 +1,119 @@
+#include "core/voxel/voxelize.h"
+
+#include <tbb/parallel_for.h>
+
+#include "core/base/interrupted.h"
+#include "core/voxel/bin_triangles.h"
+#include "core/voxel/triangle_rows.h"
+
+namespace sightline {
+namespace {
+
+constexpr size_t kBlocksATime = 512;                    // between two looks at `stop`
+constexpr int64_t kMostBlocksATime = int64_t(1) << 24;  // lists of a box of blocks, in all
+
+VoxelBox blocksOf(const Scene& scene, const Lattice& lattice) {
+  const Bounds bounds = sceneBounds(scene);
+  const double blocks_a_unit = std::ldexp(1.0, -lattice.exponent) / kBlockSide;
+  const glm::dvec3 low = glm::dvec3(bounds.low) * blocks_a_unit,
+                   high = glm::dvec3(bounds.high) * blocks_a_unit;
+  return {glm::ivec3(glm::ceil(low)) - 1, glm::ivec3(glm::floor(high))};
+}
+
+VoxelBlock voxelizeBlock(const Scene& scene, const VoxelizeOptions& options, const glm::ivec3& place,
+                         std::span<const uint32_t> triangles, BlockBits& bits) {
+  bits.clear();
+  const glm::ivec3 low = place * kBlockSide;
+  const VoxelBox block{low, low + (kBlockSide - 1)};
+  const double voxels_a_unit = std::ldexp(1.0, -options.lattice.exponent);
+  const auto insert = [&](int y, int z, int first, int last) {
+    bits.row(y - low.y, z - low.z) |= rowBits(first - low.x, last - low.x);
+  };
+  for (const uint32_t id : triangles) {
+    const auto corners = inVoxels(scene.corners(id), voxels_a_unit);
+    if (options.separation == Separation::kConservative) {
+      TriangleRows(corners).visit(block, insert);
+    } else {
+      SeparatingRows(corners, options.separation).visit(block, insert);
+    }
+  }
+  VoxelBlock result;
+  result.place = place;
+  result.bricks = bits.bricks();
+  addAttributes(scene, triangles, options.attributes, options.lattice, result);
+  return result;
+}
+
+// The layers of blocks from box.low.z on that may be worked on at once.
+int layersFrom(const VoxelBox& box, const std::vector<uint64_t>& pairs, int first, uint64_t memory) {
+  const int64_t blocks_a_layer = int64_t(box.high.x - box.low.x + 1) * (box.high.y - box.low.y + 1);
+  const uint64_t most_pairs = memory / sizeof(uint32_t);
+  uint64_t sum = pairs[size_t(first)];
+  int layers = 1;
+  while (first + layers < int(pairs.size()) && (layers + 1) * blocks_a_layer <= kMostBlocksATime &&
+         sum + pairs[size_t(first + layers)] <= most_pairs) {
+    sum += pairs[size_t(first + layers++)];
+  }
+  return layers;
+}
+
+}  // namespace
+
+void voxelize(const Scene& scene, const VoxelizeOptions& options,
+              const std::function<void(VoxelBlock&&)>& take) {
+  requireFits(options.lattice, sceneBounds(scene));
+  const VoxelBox box = blocksOf(scene, options.lattice);
+  const glm::ivec3 size = box.high - box.low + 1;
+  const std::vector<uint64_t> pairs = countPairsOfLayers(scene, options.lattice, box);
+  uint64_t all_pairs = 0, done_pairs = 0, voxels = 0;
+  for (const uint64_t in_layer : pairs) all_pairs += in_layer;
+  std::vector<uint64_t> bound_pairs;
+  for (int layer = 0; layer < size.z;) {
+    const int layers = layersFrom(box, pairs, layer, options.memory);
+    const VoxelBox part{{box.low.x, box.low.y, box.low.z + layer},
+                        {box.high.x, box.high.y, box.low.z + layer + layers - 1}};
+    const BlockTriangles binned = binTriangles(scene, options.lattice, part);
+    std::vector<size_t> filled;
+    for (size_t i = 0; i + 1 < binned.first.size(); ++i) {
+      if (binned.first[i] != binned.first[i + 1]) filled.push_back(i);
+    }
+    std::vector<VoxelBlock> blocks(std::min(kBlocksATime, filled.size()));
+    for (size_t begin = 0; begin < filled.size(); begin += kBlocksATime) {
+      if (options.stop != nullptr && *options.stop) throw Interrupted();
+      const size_t count = std::min(kBlocksATime, filled.size() - begin);
+      tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1), [&](const auto& range) {
+        BlockBits bits;
+        for (size_t i = range.begin(); i < range.end(); ++i) {
+          const size_t at = filled[begin + i];
+          const glm::ivec3 place =
+              part.low + glm::ivec3(int(at % size_t(size.x)), int(at / size_t(size.x) % size_t(size.y)),
+                                    int(at / (size_t(size.x) * size_t(size.y))));
+          blocks[i] = voxelizeBlock(scene, options, place, binned.of(at), bits);
+          if (options.with_triangles) blocks[i].triangles.assign(binned.of(at).begin(), binned.of(at).end());
+        }
+      });
+      for (size_t i = 0; i < count; ++i) {
+        if (blocks[i].bricks.empty()) continue;
+        voxels += blocks[i].count();
+        take(std::move(blocks[i]));
+      }
+      if (options.progress) {
+        const double part_done = double(begin + count) / double(filled.size());
+        uint64_t part_pairs = 0;
+        for (int i = layer; i < layer + layers; ++i) part_pairs += pairs[size_t(i)];
+        options.progress((double(done_pairs) + part_done * double(part_pairs)) / double(all_pairs), voxels);
+      }
+    }
+    for (int i = layer; i < layer + layers; ++i) done_pairs += pairs[size_t(i)];
+    layer += layers;
+  }
+}
+
+VoxelGrid voxelize(const Scene& scene, const VoxelizeOptions& options) {
+  VoxelGrid grid;
+  grid.lattice = options.lattice;
+  voxelize(scene, options, [&](VoxelBlock&& block) { grid.blocks.push_back(std::move(block)); });
+  return grid;
+}
+
+}  // namespace sightline
