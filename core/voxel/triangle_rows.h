@@ -5,16 +5,9 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "core/voxel/voxel_box.h"
+
 namespace sightline {
-
-/// Voxels from a low to a high one, both with their ends; none where low > high along an axis.
-struct VoxelBox {
-  glm::ivec3 low{0}, high{-1};
-};
-
-inline VoxelBox overlapOf(const VoxelBox& a, const VoxelBox& b) {
-  return {glm::max(a.low, b.low), glm::min(a.high, b.high)};
-}
 
 /// The voxels whose closed cubes a closed triangle has a point in common with, row by row along x: exactly
 /// these, whatever the triangle's size and shape (a segment or a point too).
