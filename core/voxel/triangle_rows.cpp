@@ -22,15 +22,6 @@ ExactPoint pointOf(const glm::dvec3& p) {
 
 }  // namespace
 
-TriangleRows::TriangleRows(const std::array<glm::dvec3, 3>& corners) : corners_(corners) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = std::min({corners[0][axis], corners[1][axis], corners[2][axis]});
-    const double high = std::max({corners[0][axis], corners[1][axis], corners[2][axis]});
-    box_.low[axis] = ceiling(low) - 1;  // closed: cube i meets what is at i + 1
-    box_.high[axis] = -ceiling(-high);
-  }
-}
-
 void TriangleRows::prepare() {
   is_ready_ = true;
   const auto& p = corners_;
@@ -67,7 +58,7 @@ void TriangleRows::addEdges(int u, int v, int orientation) {
 
 void TriangleRows::addEdge(int u, int v, int edge, int side) {
   const glm::dvec3 &p = corners_[size_t(edge)], &q = corners_[size_t((edge + 1) % 3)];
-  HalfSpace half;
+  HalfSpace half{};
   half.u = u;
   half.v = v;
   half.edge = edge;
@@ -95,8 +86,9 @@ void TriangleRows::addPlane(const glm::ivec3& signs) {
   const glm::dvec3 normal = plus - minus, magnitude = glm::abs(plus) + glm::abs(minus);
   const glm::dvec3 size = glm::dvec3(box_.high - box_.low) + 3.0;
   for (const int side : {1, -1}) {
-    HalfSpace half;
+    HalfSpace half{};
     half.side = side;
+    half.u = half.v = -1;
     half.rises = side * signs;
     half.factor = double(side) * normal;
     half.tolerance =
@@ -136,18 +128,14 @@ bool TriangleRows::holds(const HalfSpace& half, const glm::ivec3& voxel) const {
          0;
 }
 
-// By halves: a half space holds from one voxel of the row on, or up to one.
-void TriangleRows::search(const HalfSpace& half, glm::ivec3 at, int axis, int& low, int& high) const {
+// A half space holds from one voxel of the row on, or up to one.
+void TriangleRows::search(const HalfSpace& half, glm::ivec3 at, int axis, int& low, int& high, int from,
+                          int to) const {
   const bool rises = half.rises[axis] > 0;
-  const auto holdsAt = [&](int place) {
-    at[axis] = place;
-    return holds(half, at);
-  };
-  int from = low,
-      to = high + 1;  // rises: the first that holds is in from .. to; else the first that does not
-  while (from < to) {
+  while (from < to) {  // rises: the first that holds is in from .. to; else the first that does not
     const int middle = from + (to - from) / 2;
-    if (holdsAt(middle) == rises) {
+    at[axis] = middle;
+    if (holds(half, at) == rises) {
       to = middle;
     } else {
       from = middle + 1;
