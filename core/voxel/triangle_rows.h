@@ -77,7 +77,7 @@ class TriangleRows {
   struct HalfSpace {
     glm::dvec3 factor;
     double rest, tolerance;
-    double inverse[2];  ///< of factor.x, factor.y
+    double inverse;     ///< of factor.x, or where that is 0 of factor.y
     glm::ivec3 rises;   ///< exact signs of factor
     glm::ivec3 corner;  ///< of the voxel: 0 or 1 along each axis
     int side;           ///< sign of the orientation that is on the inner side
@@ -91,10 +91,12 @@ class TriangleRows {
     return (size.x == 0) + (size.y == 0) + (size.z == 0) >= 2;
   }
   void prepare();
-  void addEdge(int u, int v, int edge, int side);
-  void addEdges(int u, int v, int orientation);
+  template <int U, int V>
+  void addEdge(int edge, int side);
+  template <int U, int V>
+  void addEdges(int orientation);
   void addPlane(const glm::ivec3& signs);
-  void keep(HalfSpace half);
+  void keep(HalfSpace& half);
   bool holds(const HalfSpace& half, const glm::ivec3& voxel) const;
   /// By halves, where the half space begins or ends to hold: in from .. to.
   void search(const HalfSpace& half, glm::ivec3 at, int axis, int& low, int& high, int from, int to) const;
@@ -104,7 +106,7 @@ class TriangleRows {
     if (low > high) return;
     double rest = half.rest + half.factor.z * double(at.z - box_.low.z);
     if (axis == 0) rest += half.factor.y * double(at.y - box_.low.y);
-    const double inverse = half.inverse[axis];
+    const double inverse = half.inverse;
     const double end = -rest * inverse, reach = half.tolerance * std::abs(inverse);
     const int base = box_.low[axis];
     const double from = double(low - base), to = double(high - base);

@@ -86,10 +86,10 @@ void plainLoop(const Scene& scene, float voxels_a_unit, DenseGrid& grid) {
                             corners[2] * voxels_a_unit - origin};
     const glm::vec3 e[3] = {v[1] - v[0], v[2] - v[1], v[0] - v[2]};
     const glm::vec3 n = glm::cross(e[0], e[1]);
-    const glm::ivec3 low =
-        glm::max(glm::ivec3(glm::floor(glm::min(v[0], glm::min(v[1], v[2])))), glm::ivec3(0));
-    const glm::ivec3 high =
-        glm::min(glm::ivec3(glm::floor(glm::max(v[0], glm::max(v[1], v[2])))), grid.size - 1);
+    // With the voxels on both sides of what lies on the lattice, as the exact set has them.
+    const glm::vec3 least = glm::min(v[0], glm::min(v[1], v[2])), most = glm::max(v[0], glm::max(v[1], v[2]));
+    const glm::ivec3 low = glm::max(glm::ivec3(glm::ceil(least)) - 1, glm::ivec3(0));
+    const glm::ivec3 high = glm::min(glm::ivec3(glm::floor(most)), grid.size - 1);
     const glm::vec3 corner(n.x > 0 ? 1.f : 0.f, n.y > 0 ? 1.f : 0.f, n.z > 0 ? 1.f : 0.f);
     const float d1 = glm::dot(n, corner - v[0]), d2 = glm::dot(n, (1.f - corner) - v[0]);
     glm::vec2 xy[3], yz[3], zx[3];
