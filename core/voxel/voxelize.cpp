@@ -40,6 +40,7 @@ VoxelBlock voxelizeBlock(const Scene& scene, const VoxelizeOptions& options, con
   VoxelBlock result;
   result.place = place;
   result.bricks = bits.bricks();
+  addAttributes(scene, triangles, options.attributes, options.lattice, result);
   return result;
 }
 

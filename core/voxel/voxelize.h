@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "core/voxel/separating_rows.h"
+#include "core/voxel/voxel_attributes.h"
 #include "core/voxel/voxel_grid.h"
 
 namespace sightline {
@@ -11,7 +12,8 @@ namespace sightline {
 struct VoxelizeOptions {
   Lattice lattice;
   Separation separation = Separation::kConservative;
-  bool with_triangles = true;  ///< keep each block's ids
+  bool with_triangles = true;        ///< keep each block's ids
+  WantedAttributes attributes = {};  ///< of each voxel
   /// Bytes that lists of triangles may take at once, beside the scene: with fewer, more passes over the
   /// scene. At least one layer of blocks is worked on at once, whatever it takes.
   uint64_t memory = uint64_t(1) << 30;
