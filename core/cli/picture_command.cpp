@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include "core/api/session.h"
 #include "core/bake/require_scene.h"
@@ -15,6 +16,7 @@
 #include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
+#include "core/cli/picture_voxels.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
 #include "core/picture/picture.h"
@@ -22,6 +24,7 @@
 #include "core/pvs/pvs_file.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/scene/scene.h"
+#include "core/voxel/voxel_file.h"
 
 namespace sightline {
 namespace {
@@ -34,6 +37,7 @@ struct PictureCommand {
   PictureOptions options;
   SceneLoadOptions load;
   DoorState doors = DoorState::kClosed;
+  uint32_t level = 0;  ///< of voxels
 };
 
 std::string missingList(const Picture& picture) {
@@ -44,10 +48,26 @@ std::string missingList(const Picture& picture) {
   return ids + (picture.missing_triangles.size() > kMissingShown ? ", ..." : "");
 }
 
+void drawVoxelFile(const PictureCommand& command) {
+  if (!command.pvs.empty() || !command.cell.empty() || command.view != "outside") {
+    throw Error(
+        fmt::format("{}: a picture of voxels is of a level, without a set, a cell or a view from inside",
+                    command.scene.string()),
+        kExitUsage);
+  }
+  requireSeparate(std::array{command.output}, std::array{command.scene});
+  std::optional<double> cut;
+  if (command.options.cut == CutMode::kHeight) cut = command.options.cut_height;
+  drawVoxels({command.scene, command.output, command.level, command.device, command.options, cut});
+}
+
 void draw(const PictureCommand& command) {
   if (lowerExtension(command.output) != ".png") {
     throw Error(fmt::format("{}: must end with .png", command.output.string()), kExitUsage);
   }
+  if (isVoxelFile(command.scene)) return drawVoxelFile(command);
+  if (command.pvs.empty()) throw CLI::RequiredError("pvs");
+  if (command.cell.empty()) throw CLI::RequiredError("--cell");
   requireSeparate(std::array{command.output}, std::array{command.scene, command.pvs});
   const PvsFile baked = loadFinishedCells(command.pvs);
   const PvsFile pvs = inState(baked, command.doors, command.pvs);
@@ -94,15 +114,14 @@ void setCut(PictureOptions& options, const std::string& cut) {
 }  // namespace
 
 void addPictureCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("picture", "Draw a set: visible triangles green, missing ones red");
+  CLI::App* command =
+      app.add_subcommand("picture", "Draw a set: visible triangles green, missing ones red; or voxels");
   const auto options = std::make_shared<PictureCommand>();
-  command->add_option("scene", options->scene, "the scene that was baked")->required()->type_name("SCENE");
-  command->add_option("pvs", options->pvs, "a bake, or the .part of one in work")
+  command->add_option("scene", options->scene, "the scene that was baked; or voxels (.slv), alone")
       ->required()
-      ->type_name("OUT.pvs");
-  command->add_option("--cell", options->cell, "view cell by name, or by index from 0")
-      ->required()
-      ->type_name("CELL");
+      ->type_name("SCENE|VOXELS.slv");
+  command->add_option("pvs", options->pvs, "a bake, or the .part of one in work")->type_name("OUT.pvs");
+  command->add_option("--cell", options->cell, "view cell by name, or by index from 0")->type_name("CELL");
   command->add_option("-o,--output", options->output, "picture to write")
       ->required()
       ->check(notStandardOutput("a picture"))
@@ -122,8 +141,9 @@ void addPictureCommand(CLI::App& app) {
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option("--cut", options->cut,
-                   "outside: leave out what is above this height (auto: a ceiling; none)")
+      ->add_option(
+          "--cut", options->cut,
+          "outside: leave out what is above this height (auto: a ceiling; none), of voxels whole ones")
       ->type_name("Y")
       ->capture_default_str();
   command
@@ -131,6 +151,10 @@ void addPictureCommand(CLI::App& app) {
                    "cpu, opencl or vulkan; the latter two also with :INDEX or :PART-OF-NAME")
       ->check(deviceName())
       ->type_name("NAME")
+      ->capture_default_str();
+  command->add_option("--level", options->level, "of voxels: 0 is the finest, each next twice as large")
+      ->transform(wholeNumber(0, 31))
+      ->type_name("N")
       ->capture_default_str();
   declareLoading(*command, options->load, kAsBakeDid);
   declareDoors(*command, options->doors);

@@ -10,6 +10,7 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
+#include "core/cli/share_line.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/obj_text.h"
 #include "core/formats/save_scene.h"
@@ -52,6 +53,32 @@ void saveBeside(const SceneArguments& arguments, const std::vector<ViewCell>& ce
   }
 }
 
+/// The vertices are made twice, the triangles once.
+SceneStream saveScan(uint64_t triangles, uint64_t seed, const SceneExtras& extras, const std::string& file) {
+  ShareLine status("made");
+  const auto tell = [&](uint64_t done, double all) {
+    status.show(double(done) / all, [&] { return shortCount(done) + " vertices and triangles"; });
+  };
+  SceneStream stream = streamScan(triangles, seed, extras, [&](uint32_t vertices, uint32_t of) {
+    tell(vertices, 4.0 * of);  // twice as many triangles as vertices
+  });
+  uint64_t done = stream.vertices;
+  // Passes on what a part of the stream makes, and tells.
+  const auto tellOf = [&](auto& part) {
+    part = [&, make = std::move(part)](const auto& take) {
+      make([&](const auto& some) {
+        take(some);
+        tell(done += some.size(), 2.0 * stream.vertices + stream.triangleCount());
+      });
+    };
+  };
+  tellOf(stream.positions);
+  tellOf(stream.triangles);
+  saveGlb(stream, file);
+  status.end();
+  return stream;
+}
+
 void run(const SceneArguments& arguments) {
   const std::array<std::filesystem::path, 3> files = {arguments.output, arguments.cells, arguments.walk};
   requireSeparate(files, {});
@@ -64,8 +91,7 @@ void run(const SceneArguments& arguments) {
   const CameraPath walk =
       walk_file.empty() ? CameraPath{} : generateWalk(name, triangles, seed, frames, kinds);
   if (name == "scan" && lowerExtension(arguments.output) == ".glb") {
-    const SceneStream scan = streamScan(triangles, seed, extras);
-    saveGlb(scan, arguments.output);
+    const SceneStream scan = saveScan(triangles, seed, extras, arguments.output);
     printSize(arguments.output, scan.triangleCount(), scan.vertices, scan.objects.size(), scan.bounds);
     return saveBeside(arguments, cells, walk);
   }

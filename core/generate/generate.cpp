@@ -118,16 +118,17 @@ Scene collect(const SceneStream& stream) {
 
 }  // namespace
 
-SceneStream streamScan(uint64_t triangles, uint64_t seed, const SceneExtras& extras) {
+SceneStream streamScan(uint64_t triangles, uint64_t seed, const SceneExtras& extras,
+                       const std::function<void(uint32_t vertices, uint32_t of)>& measured) {
   find("scan", triangles);
   checkExtras("scan", extras);
-  return scanStream(triangles, seed, extras.holes);
+  return scanStream(triangles, seed, extras.holes, measured);
 }
 
 Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed, const SceneExtras& extras) {
   const Generator& generator = find(name, triangles);
   checkExtras(name, extras);
-  if (generator.parts == nullptr) return collect(scanStream(triangles, seed, extras.holes));
+  if (generator.parts == nullptr) return collect(scanStream(triangles, seed, extras.holes, {}));
   return assembleScene(generator.parts(triangles, seed), triangles, seed, {extras.alpha, extras.closed});
 }
 

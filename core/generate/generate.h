@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -52,8 +53,10 @@ Scene generateScene(const std::string& name, uint64_t triangles, uint64_t seed,
                     const SceneExtras& extras = {});
 
 /// The scan that generateScene makes of the same arguments, in pieces: 200 million triangles take no more
-/// memory than a million. Throws as generateScene.
-SceneStream streamScan(uint64_t triangles, uint64_t seed, const SceneExtras& extras = {});
+/// memory than a million. Before, the vertices are made once for their bounds: `measured` is told how many of
+/// them are done, on the caller's thread. Throws as generateScene.
+SceneStream streamScan(uint64_t triangles, uint64_t seed, const SceneExtras& extras = {},
+                       const std::function<void(uint32_t vertices, uint32_t of)>& measured = {});
 
 /// Generates "city" or "plant" of at most so many kinds of modules (blocks of houses; bays of a plant, half
 /// of them mirrored, and aisles), 1 .. kMaxKinds, each an instance: the count is of all, whatever is stored

@@ -47,7 +47,8 @@ void makeTriangles(const ScanSurface& surface, const std::function<void(std::spa
 
 }  // namespace
 
-SceneStream scanStream(uint64_t triangles, uint64_t seed, bool holes) {
+SceneStream scanStream(uint64_t triangles, uint64_t seed, bool holes,
+                       const std::function<void(uint32_t vertices, uint32_t of)>& measured) {
   const auto surface = std::make_shared<const ScanSurface>(triangles, seed, holes);
   const std::vector<ScanSurface::Panel>& panels = surface->panels();
   std::vector<uint32_t> counts(panels.size());
@@ -59,9 +60,12 @@ SceneStream scanStream(uint64_t triangles, uint64_t seed, bool holes) {
   }
   stream.vertices = surface->vertexCount();
   stream.bounds = {surface->position(0), surface->position(0)};
+  uint32_t done = 0;
   makePositions(*surface, [&](std::span<const glm::vec3> some) {
     for (const glm::vec3& p : some)
       stream.bounds = {glm::min(stream.bounds.low, p), glm::max(stream.bounds.high, p)};
+    done += uint32_t(some.size());
+    if (measured) measured(done, stream.vertices);
   });
   stream.positions = [surface](const auto& take) { makePositions(*surface, take); };
   stream.triangles = [surface](const auto& take) { makeTriangles(*surface, take); };
