@@ -17,6 +17,7 @@
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/picture_voxels.h"
+#include "core/cli/points.h"
 #include "core/formats/load_scene.h"
 #include "core/io/file_io.h"
 #include "core/picture/picture.h"
@@ -37,7 +38,8 @@ struct PictureCommand {
   PictureOptions options;
   SceneLoadOptions load;
   DoorState doors = DoorState::kClosed;
-  uint32_t level = 0;  ///< of voxels
+  uint32_t level = 0;  ///< of voxels, and reach
+  std::vector<std::string> reach;
 };
 
 std::string missingList(const Picture& picture) {
@@ -58,7 +60,8 @@ void drawVoxelFile(const PictureCommand& command) {
   requireSeparate(std::array{command.output}, std::array{command.scene});
   std::optional<double> cut;
   if (command.options.cut == CutMode::kHeight) cut = command.options.cut_height;
-  drawVoxels({command.scene, command.output, command.level, command.device, command.options, cut});
+  drawVoxels({command.scene, command.output, command.level, command.device, command.options, cut,
+              readPoints(command.reach, "--reach")});
 }
 
 void draw(const PictureCommand& command) {
@@ -66,6 +69,7 @@ void draw(const PictureCommand& command) {
     throw Error(fmt::format("{}: must end with .png", command.output.string()), kExitUsage);
   }
   if (isVoxelFile(command.scene)) return drawVoxelFile(command);
+  if (!command.reach.empty()) throw Error("--reach: is of voxels (.slv) only", kExitUsage);
   if (command.pvs.empty()) throw CLI::RequiredError("pvs");
   if (command.cell.empty()) throw CLI::RequiredError("--cell");
   requireSeparate(std::array{command.output}, std::array{command.scene, command.pvs});
@@ -156,6 +160,12 @@ void addPictureCommand(CLI::App& app) {
       ->transform(wholeNumber(0, 31))
       ->type_name("N")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--reach", options->reach,
+          "of voxels: also draw, dark red, what is sealed off from these points, x,y,z, or a file of them")
+      ->type_name("X,Y,Z")
+      ->expected(1, -1);
   declareLoading(*command, options->load, kAsBakeDid);
   declareDoors(*command, options->doors);
   command->callback([options] {

@@ -6,8 +6,11 @@
 #include <cmath>
 
 #include "core/api/session.h"
+#include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/cli/voxel_level.h"
+#include "core/voxel/inner_voxels.h"
+#include "core/voxel/reach.h"
 #include "core/voxel/voxel_faces.h"
 #include "core/voxel/voxels_below.h"
 
@@ -24,12 +27,29 @@ constexpr std::array<glm::vec3, 8> kLevelColors = {{{0.50f, 0.51f, 0.53f},
                                                     {0.62f, 0.09f, 0.14f},
                                                     {0.42f, 0.12f, 0.48f}}};
 
-VoxelGrid cutOpen(const VoxelGrid& grid, double height, const std::filesystem::path& file) {
+constexpr glm::vec3 kInnerColor{0.50f, 0.10f, 0.05f};
+
+VoxelGrid cutOpen(VoxelGrid grid, const std::optional<double>& height) {
+  if (!height) return grid;
   // Whole voxels: the one that the plane cuts goes, too. Far heights are as good as all or none.
-  const double end = std::floor(height / grid.lattice.voxelSize());
-  VoxelGrid below = voxelsBelow(grid, int64_t(std::fmax(-0x1p40, std::fmin(end, 0x1p40))));
-  if (!below.blocks.empty()) return below;
-  throw Error(fmt::format("{}: no voxel lies below --cut", file.string()));
+  const double end = std::floor(*height / grid.lattice.voxelSize());
+  return voxelsBelow(grid, int64_t(std::fmax(-0x1p40, std::fmin(end, 0x1p40))));
+}
+
+/// The voxels that no triangle meets and that are not reached from the places.
+VoxelGrid notReached(const VoxelGrid& grid, std::vector<glm::dvec3> places, const glm::dvec3& offset) {
+  for (glm::dvec3& place : places) place -= offset;
+  const VoxelSpace space = reach(grid, {.seeds = std::move(places)});
+  fmt::print("{}\n", reachedText(space.counts()));
+  return innerVoxels(space);
+}
+
+/// Adds the triangles of another scene.
+void append(Scene& scene, const Scene& other) {
+  const auto first = uint32_t(scene.positions.size());
+  scene.positions.insert(scene.positions.end(), other.positions.begin(), other.positions.end());
+  for (const glm::uvec3& t : other.triangles) scene.triangles.push_back(t + first);
+  scene.objects.front().triangle_count = uint32_t(scene.triangles.size());
 }
 
 }  // namespace
@@ -37,18 +57,25 @@ VoxelGrid cutOpen(const VoxelGrid& grid, double height, const std::filesystem::p
 void drawVoxels(const VoxelPicture& options) {
   const VoxelFile voxels = loadVoxels(options.voxels);
   const VoxelGrid& whole = levelOf(voxels, options.level, options.voxels);
-  const VoxelGrid cut = options.cut_height
-                            ? cutOpen(whole, *options.cut_height - voxels.head.offset.y, options.voxels)
-                            : VoxelGrid{};
-  const VoxelGrid& grid = options.cut_height ? cut : whole;
-  Session session(voxelScene(grid, FaceMerging::kBlocks), {.device = options.device});
+  std::optional<double> cut = options.cut_height;
+  if (cut) *cut -= voxels.head.offset.y;
+  VoxelGrid inner;
+  if (!options.reach.empty()) inner = cutOpen(notReached(whole, options.reach, voxels.head.offset), cut);
+  const VoxelGrid grid = cutOpen(whole, cut);
+  if (grid.blocks.empty())
+    throw Error(fmt::format("{}: no voxel lies below --cut", options.voxels.string()), kExitUsage);
+  Scene scene = voxelScene(grid, FaceMerging::kBlocks);
+  const uint32_t surface_triangles = scene.triangleCount();
+  if (!inner.blocks.empty()) append(scene, voxelScene(inner, FaceMerging::kBlocks));
+  Session session(std::move(scene), {.device = options.device});
   session.open();
   const TraceRays trace = [&](std::span<const Ray> rays, std::span<Hit> hits) {
     session.traceRays(rays, hits);
   };
-  const glm::vec3 color = kLevelColors[options.level % kLevelColors.size()];
-  const Picture picture = renderWhole(
-      trace, session.scene(), [&](uint32_t) { return color; }, options.size);
+  const auto color = [&](uint32_t triangle) {
+    return triangle < surface_triangles ? kLevelColors[options.level % kLevelColors.size()] : kInnerColor;
+  };
+  const Picture picture = renderWhole(trace, session.scene(), color, options.size);
   savePng(picture.image, options.output);
   fmt::print("{}: {} of {:g} (level {})\n", options.output.string(), counted(grid.count(), "voxel"),
              grid.lattice.voxelSize(), options.level);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/picture/picture.h"
 
@@ -14,9 +15,12 @@ struct VoxelPicture {
   std::string device;
   PictureOptions size;                    ///< width and height
   std::optional<double> cut_height = {};  ///< leave out voxels that reach above it, in the scene file's units
+  /// Draw what is not reached from these places, too: in the file's coordinates.
+  std::vector<glm::dvec3> reach = {};
 };
 
-/// Draws a level of a voxel file, in the level's colour, and says what. Throws Error.
+/// Draws a level of a voxel file, in the level's colour, what is not reached in another, and says what.
+/// Throws Error.
 void drawVoxels(const VoxelPicture& options);
 
 }  // namespace sightline

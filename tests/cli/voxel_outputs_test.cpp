@@ -53,7 +53,8 @@ TEST_F(VoxelOutputs, ExportWritesTheFacesOfALevel) {
 
 TEST_F(VoxelOutputs, PictureDrawsALevel) {
   std::string before;
-  for (const char* options : {"--level 0", "--level 1", "--cut 2", "--level 1 --cut 2"}) {
+  for (const char* options : {"--level 0", "--level 1", "--cut 2", "--level 1 --cut 2",
+                              "--cut 2 --reach 0,9,0", "--level 1 --cut 2 --reach 0,2,0"}) {
     expectDone("picture '" + path("a.slv") + "' " + options + " -o '" + path("a.png") +
                "' --device cpu --width 160 --height 120");
     const std::string picture = test::readText(folder_ / "a.png");
