@@ -64,6 +64,7 @@ class VulkanPlayer : public WalkPlayer {
   std::vector<uint32_t> referenceDrawables() override {
     return drawablesShown(check_.referenceIds(), drawing_.mesh().drawables().list.size());
   }
+  std::vector<float> referenceDepth() override { return check_.referenceDepth(); }
 
  protected:
   virtual void drawFrame(const Camera& camera, uint64_t number) = 0;
@@ -109,9 +110,9 @@ class HostPlayer : public VulkanPlayer {
 class GpuPlayer : public VulkanPlayer {
  public:
   GpuPlayer(VulkanDrawing& drawing, DepthCheck& check, const WalkClock& clock, const WalkScene& scene,
-            GpuMethod method, bool by_set, OutsideCells outside)
+            GpuMethod method, bool by_set, const CellChoice& cells)
       : VulkanPlayer(drawing, check, clock), scene_(scene), culling_(drawing, method) {
-    if (by_set) cell_.emplace(*scene.units, outside);
+    if (by_set) cell_.emplace(*scene.units, cells);
   }
 
   FrameCounts counts() override {
@@ -184,7 +185,7 @@ class VulkanWalkDevice : public WalkDevice {
     const WalkMethodInfo& info = walkMethod(method);
     if (info.on_gpu) {
       return std::make_unique<GpuPlayer>(drawing_, check_, clock_, scene_, gpuMethod(method), info.needs_pvs,
-                                         options.outside);
+                                         options.cells);
     }
     return std::make_unique<HostPlayer>(drawing_, check_, clock_,
                                         makeCullMethod(method, scene_.draw, scene_.units, options));

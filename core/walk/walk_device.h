@@ -47,6 +47,8 @@ class WalkPlayer {
   /// should show (kNoTriangle: none).
   virtual std::vector<size_t> falsePixels() = 0;
   virtual std::vector<uint32_t> referenceDrawables() = 0;
+  /// Likewise how deep each pixel should be: reversed, 0 where it shows nothing.
+  virtual std::vector<float> referenceDepth() = 0;
 
   /// As if just made.
   virtual void forget() = 0;

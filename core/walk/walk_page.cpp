@@ -312,11 +312,59 @@ void addSetTable(HtmlReport& page, const WalkReport& report) {
       "that is reached.");
 }
 
+/// Table 8.1: sets of small cells against those of large ones.
+void addCellTable(HtmlReport& page, const WalkReport& report) {
+  const std::vector<CellStretch> stretches = cellStretchesOf(report.frames);
+  if (stretches.empty()) return;
+  ReportTable table{.columns = {"cell", "triangles", "share"}};
+  std::vector<const MethodReplay*> methods;
+  for (const MethodReplay& m : report.replay.methods) {
+    if (m.times.empty()) continue;
+    methods.push_back(&m);
+    table.columns.push_back(m.name + ", ms");
+  }
+  const MethodReplay *none = methodOf(report, "none"), *pvs = methodOf(report, "pvs");
+  const bool both = none != nullptr && pvs != nullptr;
+  if (both) table.columns.insert(table.columns.end(), {"pvs against none", "factor x share"});
+  if (pvs != nullptr && !pvs->checks.empty()) table.columns.push_back("wrong share of pvs");
+  const double pixels = double(report.width) * report.height;
+  for (const CellStretch& stretch : stretches) {
+    const WalkedCell& cell = report.cells[stretch.cell];
+    const double share = double(cell.triangles) / double(std::max<uint64_t>(report.scene.triangles, 1));
+    std::vector<std::string> row = {cell.name, std::to_string(cell.triangles),
+                                    fmt::format("{} %", digits(100 * share))};
+    const auto of = [&](const MethodReplay& m) {
+      return summarize(m, stretch.frames.begin, stretch.frames.end);
+    };
+    for (const MethodReplay* m : methods) {
+      const WalkSummary s = of(*m);
+      row.push_back(s.timed > 0 ? digits(s.mean) : "-");
+    }
+    if (both) {
+      const double slow = of(*none).mean, fast = of(*pvs).mean;
+      row.push_back(times(slow, fast));
+      row.push_back(fast > 0 && slow > 0 ? fmt::format("{:.0f} %", 100 * slow / fast * share) : "-");
+    }
+    if (pvs != nullptr && !pvs->checks.empty()) {
+      const WalkSummary s = of(*pvs);
+      row.push_back(s.checked > 0
+                        ? fmt::format("{:.3g} %", 100 * double(s.false_pixels) / (pixels * double(s.checked)))
+                        : "-");
+    }
+    table.rows.push_back(row);
+  }
+  page.section("What the set of each cell is worth");
+  page.table(table);
+  page.text(
+      "Views out of each cell, drawn by its own set: what smaller cells gain, and what larger ones lose.");
+}
+
 void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pictures) {
   ReportTable table{
       .columns = {"method", "false pixels", "of all pixels", "frames with any", "most in a frame",
-                  "objects went missing", "longest", "of object", "from frame"},
+                  "largest region", "objects went missing", "longest", "of object", "from frame"},
       .short_names = true};
+  if (report.replay.alpha) table.columns.emplace_back("behind holes or glass");
   const double pixels = double(report.width) * report.height;
   bool any = false;
   for (const MethodReplay& m : report.replay.methods) {
@@ -327,10 +375,11 @@ void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pi
     table.rows.push_back(
         {m.name, std::to_string(s.false_pixels),
          fmt::format("{:.3g} %", 100 * double(s.false_pixels) / (pixels * double(m.checks.size()))),
-         std::to_string(s.false_frames), std::to_string(s.most_false), counted(m.pop_count, "time"),
+         std::to_string(s.false_frames), std::to_string(s.most_false), std::to_string(s.largest_region), counted(m.pop_count, "time"),
          popped ? counted(m.pops.front().frames, "frame") : "-",
          popped ? std::to_string(m.pops.front().drawable) : "-",
          popped ? std::to_string(m.pops.front().first_frame) : "-"});
+    if (report.replay.alpha) table.rows.back().push_back(std::to_string(s.behind_alpha));
   }
   if (!any) return;
   page.section("What is wrong");
@@ -339,8 +388,13 @@ void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pi
       "pixel is "
       "false if it shows something farther away. An object is missing for as many frames in a row as it has "
       "false "
-      "pixels.");
+      "pixels. A region is of pixels that touch each other, at corners too.");
   page.table(table);
+  if (report.replay.alpha) {
+    page.text(
+        "Behind holes or glass: false pixels in front of which the ray meets a surface that one sees through. A set "
+        "is wrong there where its bake took such surfaces for solid.");
+  }
   uint64_t other = 0, unexplained = 0;
   for (const TracedFrame& t : report.replay.traced)
     other += t.other_pixels, unexplained += t.unexplained_pixels;
@@ -396,6 +450,7 @@ HtmlReport walkPage(const WalkReport& report, const WalkPictures& pictures, cons
     page.pictures(pictures.drawn);
   }
   addSetTable(page, report);
+  addCellTable(page, report);
   addWrong(page, report, pictures);
   page.section("Scene and walk");
   const ChcOptions& chc = report.options.method.chc;
