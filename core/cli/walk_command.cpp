@@ -47,7 +47,7 @@ struct WalkCommand {
   std::vector<std::string> methods{kAllMethods};
   std::string device = "vulkan", tracer = "cpu";
   std::string resolution = "1280x720";
-  std::string check = kAllMethods, schedule = "live", outside = "all";
+  std::string check = kAllMethods, schedule = "live", outside = "all", chain = "barriers";
   uint32_t split = kDefaultSplit;
   uint32_t views = 200;
   std::optional<uint64_t> max_false;
@@ -317,6 +317,7 @@ void sayUnused(const CLI::App& given, const WalkCommand& command) {
   if (command.pvs.empty() && asksForAll(command)) say("--outside", "of methods by sets (--pvs)");
   if (!views) sayUnlessAny({"--pvs"}, by_sets);
   if (command.pvs.empty()) say("--doors", "of sets (--pvs)");
+  if (command.device == "cpu") say("--chain", "of Vulkan");
   if (!views) say("--views", "of --path views:CELL");
   const bool checks = command.check == kAllMethods;
   if (!checks) say("--trace-every", "of --check all");
@@ -346,6 +347,7 @@ void run(const CLI::App& given, const WalkCommand& command) {
   report.pvs = command.pvs.filename().string();
   report.width = size.x, report.height = size.y;
   report.split = command.split;
+  report.chain = command.device == "cpu" ? "" : command.chain;
   report.options = replayOptions(command);
   sayUnused(given, command);
 
@@ -379,7 +381,8 @@ void run(const CLI::App& given, const WalkCommand& command) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };
   const WalkScene walk{scene, draw, units ? &*units : nullptr};
-  const auto device = makeWalkDevice(command.device, walk, clock);
+  const auto device =
+      makeWalkDevice(command.device, walk, clock, {.semaphores = command.chain == "semaphores"});
   report.device = device->info();
   report.gpu_times = device->timesGpu();
   fmt::print("{}, {}; {} of {} x {} pixels, schedule {}, seed {}\n", report.device.id, report.device.name,
@@ -497,6 +500,13 @@ void declareCulling(CLI::App& command, WalkCommand& o) {
                   "live: answers arrive when the device has them; fixed: after so many steps, the same on "
                   "all devices")
       ->check(oneOf({"live", "fixed"}))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option(
+          "--chain", o.chain,
+          "what makes a submit wait for the one before it, on Vulkan: barriers, or semaphores besides")
+      ->check(oneOf({"barriers", "semaphores"}))
       ->capture_default_str()
       ->group(group);
   whole("--batch", chc.batch_size, "hidden nodes that wait to be asked about together (chc++, opti-chc++)",

@@ -137,6 +137,9 @@ class Replayer {
         if (frame + 1 >= options_.in_flight) {
           const uint32_t done = frame + 1 - options_.in_flight;
           running.player->gpuTimes(done, times[done]);
+          if (repeat > 0 && times[done].frame > found.slowest.milliseconds) {
+            found.slowest = {done, times[done].frame, running.player->spans(done)};
+          }
         }
       }
       lastGpuTimes(*running.player, times);

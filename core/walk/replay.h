@@ -54,12 +54,20 @@ struct FalseFrame {
   std::vector<size_t> pixels;  ///< their numbers, row by row, ascending
 };
 
+/// The slowest frame of all repeats of a method.
+struct SlowestFrame {
+  uint32_t frame = 0;
+  double milliseconds = 0;  ///< 0: there was none
+  WalkFrameSpans spans = {};
+};
+
 /// What one method did. Lists are by frame, and shorter than the walk where it was stopped.
 struct MethodReplay {
   std::string name;
   uint32_t repeats = 0;  ///< whole ones, of which times are medians; 0: of a part of one
   bool warm_up = false;  ///< times are of the replay that is dropped, as it was stopped before any other
   std::vector<FrameTimes> times = {};  ///< empty: it was not run
+  SlowestFrame slowest = {};
   std::vector<FrameCounts> counts = {};
   std::vector<CheckedFrame> checks = {};          ///< empty: not checked
   std::vector<Pop> pops = {};                     ///< the longest first, at most kMostPops

@@ -10,7 +10,8 @@
 namespace sightline {
 namespace {
 
-constexpr size_t kPointsALine = 240;  // of a chart over frames
+constexpr size_t kPointsALine = 240;          // of a chart over frames
+constexpr double kThinnestSpan = 1.0 / 4000;  // of a span chart: less is no pixel wide
 
 const MethodReplay* methodOf(const WalkReport& report, std::string_view name) {
   for (const MethodReplay& m : report.replay.methods) {
@@ -194,20 +195,39 @@ void addTimes(HtmlReport& page, const WalkReport& report) {
       Of::most, all, [](const MethodReplay& m, size_t i) { return m.times[i].frame; })});
 }
 
-void addParts(HtmlReport& page, const WalkReport& report) {
-  const MethodReplay* m = mainMethod(report);
-  if (m == nullptr) return;
-  page.section("Where the time goes");
-  std::vector<ReportChart> charts;
-  if (report.gpu_times) {
-    charts.push_back(partsChart(report, *m, "GPU time by part", kGpuPartNames, &FrameTimes::gpu));
-  }
-  charts.push_back(partsChart(report, *m, "Processor time by part", kCpuPartNames, &FrameTimes::cpu));
-  page.charts(charts);
-  const auto worst = std::ranges::max_element(m->times, {}, &FrameTimes::frame);
+std::string slowestTitle(const MethodReplay& m, size_t frame, double ms) {
+  return fmt::format("The slowest frame of {}: {}, {} ms", m.name, frame, digits(ms));
+}
+
+/// What happened when in the slowest frame of all repeats.
+ReportSpans spansOf(const MethodReplay& m) {
+  const SlowestFrame& slowest = m.slowest;
+  double end = 0;
+  for (const auto& span : slowest.spans.cpu) end = std::max(end, span.end);
+  for (const auto& span : slowest.spans.gpu) end = std::max(end, span.end);
   ReportSpans spans{
-      .title = fmt::format("The slowest frame of {}: {}, {} ms", m->name, worst - m->times.begin(),
-                           digits(worst->frame)),
+      .title = slowestTitle(m, slowest.frame, slowest.milliseconds),
+      .note = fmt::format("Of all repeats. The GPU's clock is another: its first command is put where "
+                          "the first submit begins, and may start later. Spans below {} ms are left out.",
+                          digits(end * kThinnestSpan)),
+      .unit = "ms",
+      .rows = {{"processor", {}}, {"GPU", {}}}};
+  const auto add = [&](std::vector<ReportSpan>& row, const char* name, double begin, double until) {
+    if (until - begin >= end * kThinnestSpan) row.push_back({name, begin, until});
+  };
+  for (const auto& span : slowest.spans.cpu) {
+    add(spans.rows[0].second, kCpuPartNames[size_t(span.part)], span.begin, span.end);
+  }
+  for (const auto& span : slowest.spans.gpu)
+    add(spans.rows[1].second, kGpuPartNames[span.part], span.begin, span.end);
+  return spans;
+}
+
+/// Where nobody knows when: how much of the slowest frame each part takes.
+ReportSpans partsInARow(const WalkReport& report, const MethodReplay& m) {
+  const auto worst = std::ranges::max_element(m.times, {}, &FrameTimes::frame);
+  ReportSpans spans{
+      .title = slowestTitle(m, size_t(worst - m.times.begin()), worst->frame),
       .note = "How much of it each part takes, put in a row: parts alternate many times in a frame.",
       .unit = "ms",
       .rows = {}};
@@ -223,7 +243,20 @@ void addParts(HtmlReport& page, const WalkReport& report) {
   };
   row("processor", kCpuPartNames, worst->cpu);
   if (report.gpu_times) row("GPU", kGpuPartNames, worst->gpu);
-  page.spans(spans);
+  return spans;
+}
+
+void addParts(HtmlReport& page, const WalkReport& report) {
+  const MethodReplay* m = mainMethod(report);
+  if (m == nullptr) return;
+  page.section("Where the time goes");
+  std::vector<ReportChart> charts;
+  if (report.gpu_times) {
+    charts.push_back(partsChart(report, *m, "GPU time by part", kGpuPartNames, &FrameTimes::gpu));
+  }
+  charts.push_back(partsChart(report, *m, "Processor time by part", kCpuPartNames, &FrameTimes::cpu));
+  page.charts(charts);
+  page.spans(m->slowest.spans.empty() ? partsInARow(report, *m) : spansOf(*m));
 }
 
 void addQueries(HtmlReport& page, const WalkReport& report) {
@@ -375,8 +408,8 @@ void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pi
     table.rows.push_back(
         {m.name, std::to_string(s.false_pixels),
          fmt::format("{:.3g} %", 100 * double(s.false_pixels) / (pixels * double(m.checks.size()))),
-         std::to_string(s.false_frames), std::to_string(s.most_false), std::to_string(s.largest_region), counted(m.pop_count, "time"),
-         popped ? counted(m.pops.front().frames, "frame") : "-",
+         std::to_string(s.false_frames), std::to_string(s.most_false), std::to_string(s.largest_region),
+         counted(m.pop_count, "time"), popped ? counted(m.pops.front().frames, "frame") : "-",
          popped ? std::to_string(m.pops.front().drawable) : "-",
          popped ? std::to_string(m.pops.front().first_frame) : "-"});
     if (report.replay.alpha) table.rows.back().push_back(std::to_string(s.behind_alpha));
@@ -392,7 +425,8 @@ void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pi
   page.table(table);
   if (report.replay.alpha) {
     page.text(
-        "Behind holes or glass: false pixels in front of which the ray meets a surface that one sees through. A set "
+        "Behind holes or glass: false pixels in front of which the ray meets a surface that one sees "
+        "through. A set "
         "is wrong there where its bake took such surfaces for solid.");
   }
   uint64_t other = 0, unexplained = 0;
@@ -460,6 +494,7 @@ HtmlReport walkPage(const WalkReport& report, const WalkPictures& pictures, cons
               {"field of view", fmt::format("{:g} degrees", report.fov)},
               {"frames in flight", std::to_string(report.options.in_flight)},
               {"schedule", report.options.method.schedule.fixed ? "fixed" : "live"},
+              {"submits wait by", report.chain.empty() ? "-" : report.chain},
               {"batch size", std::to_string(chc.batch_size)},
               {"assumed visible", counted(chc.assumed_frames, "frame")},
               {"set", report.pvs.empty() ? "none" : report.pvs},

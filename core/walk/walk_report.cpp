@@ -84,12 +84,14 @@ Json methodJson(const WalkReport& report, const MethodReplay& method) {
   return json;
 }
 
-Json optionsJson(const ReplayOptions& o) {
+Json optionsJson(const WalkReport& report) {
+  const ReplayOptions& o = report.options;
   const ChcOptions& chc = o.method.chc;
   return {{"repeats", o.repeats},
           {"in_flight", o.in_flight},
           {"schedule", o.method.schedule.fixed ? "fixed" : "live"},
           {"seed", o.method.schedule.seed},
+          {"chain", report.chain},
           {"batch", chc.batch_size},
           {"assume", chc.assumed_frames},
           {"multi_queries", chc.multi_queries},
@@ -309,7 +311,7 @@ Json walkJson(const WalkReport& report) {
       {"width", report.width},
       {"height", report.height},
       {"fov", report.fov},
-      {"options", optionsJson(report.options)},
+      {"options", optionsJson(report)},
       {"seconds", report.replay.seconds},
       {"methods", methods},
       {"cells", cellsJson(report)},

@@ -33,6 +33,7 @@ struct WalkReport {
   double fov = 0;  ///< degrees from top to bottom
   uint64_t drawables = 0;
   uint32_t split = 0;
+  std::string chain = {};  ///< of submits: "barriers", "semaphores"; empty: there are none
   WalkFrames frames;
   ReplayOptions options;
   std::vector<LeftOutMethod> left_out;
