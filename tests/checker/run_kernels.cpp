@@ -225,38 +225,39 @@ void bakeOtherScenes(const Scene& scene, const Bvh& bvh, const ViewCell& cell) {
   }
 }
 
-/// Triangles of all sizes and in all directions, some with corners on the lattice, in eight blocks and more.
+/// Triangles of all sizes and in all directions, some with corners on the lattice, in two blocks.
 void voxelizeAll() {
   testing_support::Random random(7);
   Scene scene;
   for (uint32_t i = 0; i < 40; ++i) {
-    const glm::vec3 middle = random.point(20);
+    const glm::vec3 middle = random.point(18) + glm::vec3(0, 32, 32);
     for (int corner = 0; corner < 3; ++corner) {
-      const glm::vec3 place = middle + random.point(i % 8 == 0 ? 40 : 3);
+      const glm::vec3 place = middle + random.point(i % 8 == 0 ? 12 : 3);
       scene.positions.push_back(i % 2 == 0 ? place : glm::round(place));
     }
     scene.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
   }
   scene.objects.push_back({"all", 0, 40});
-  for (const Separation separation : {Separation::kConservative, Separation::k26, Separation::k6}) {
-    for (const bool floats : {false, true}) {
-      const VoxelizeOptions options{.lattice = latticeOf(1), .separation = separation};
-      const std::vector<VoxelBlock> wanted = voxelize(scene, options).blocks;
-      std::vector<VoxelBlock> found;
-      uint64_t voxels = 0;
-      const OpenClVoxelized done =
-          voxelizeOpenCl(scene, options, "opencl",
-                         [&](VoxelBlock&& block) {
-                           voxels += block.count();
-                           found.push_back(std::move(block));
-                         },
-                         {.group = 16, .floats = floats, .bricks = 8, .open_rows = 2});
-      const std::string what = fmt::format("separation {}, {}", int(separation), floats ? "float" : "double");
-      fmt::print("voxels: {}: {} in {} blocks, {} rows open, {} launches again\n", what, voxels, found.size(),
-                 done.open_rows, done.repeats);
-      expect(found == wanted, what);
-      expect(voxels > 1000 && done.repeats > 0, what + ": too little to check");
-    }
+  const std::pair<Separation, bool> kinds[] = {{Separation::kConservative, false},
+                                               {Separation::kConservative, true},
+                                               {Separation::k26, false},
+                                               {Separation::k6, true}};
+  for (const auto& [separation, floats] : kinds) {
+    const VoxelizeOptions options{.lattice = latticeOf(1), .separation = separation};
+    const std::vector<VoxelBlock> wanted = voxelize(scene, options).blocks;
+    std::vector<VoxelBlock> found;
+    uint64_t voxels = 0;
+    const OpenClVoxelized done = voxelizeOpenCl(scene, options, "opencl",
+                                                [&](VoxelBlock&& block) {
+                                                  voxels += block.count();
+                                                  found.push_back(std::move(block));
+                                                },
+                                                {.group = 16, .floats = floats, .bricks = 8, .open_rows = 2});
+    const std::string what = fmt::format("separation {}, {}", int(separation), floats ? "float" : "double");
+    fmt::print("voxels: {}: {} in {} blocks, {} rows open, {} launches again\n", what, voxels, found.size(),
+               done.open_rows, done.repeats);
+    expect(found == wanted, what);
+    expect(voxels > 500 && done.repeats > 0, what + ": too little to check");
   }
   fmt::print("kernel voxelizeBlocks\n");
 }
