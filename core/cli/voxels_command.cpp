@@ -76,11 +76,11 @@ void run(const VoxelsArguments& arguments) {
 }
 
 constexpr const char* kVoxelsFooter =
-    "Every voxel that a triangle meets, and no other: decided exactly, touching counts. A\n"
-    "voxel's size is a power of two in the scene's units, and the origin is a corner of\n"
-    "voxels. The file holds, for each block of 64 x 64 x 64, the ids of the triangles that\n"
-    "meet it, and coarser levels up to the root: a voxel is in one if it has a part in the\n"
-    "level below.\n\n"
+    "Every voxel that a triangle meets, and no other: decided exactly, touching\n"
+    "counts. A voxel's size is a power of two in the scene's units, and the origin is\n"
+    "a corner of voxels. The file holds, for each block of 64 x 64 x 64, the ids of\n"
+    "the triangles that meet it, and coarser levels up to the root: a voxel is in one\n"
+    "if it has a part in the level below.\n\n"
     "Examples:\n"
     "  sightline voxels city.glb -o city.slv --voxel 0.25\n"
     "  sightline voxels statue.ply -o statue.slv --along 1024\n";
