@@ -10,9 +10,11 @@
 namespace sightline {
 
 struct BoundOptions {
-  int free_side = 16;  ///< HideOptions
-  int least_side = 1;
-  int cuts = 3;  ///< HideOptions
+  // What to spend on it: the more, the more is proved.
+  int free_side = 16;             ///< HideOptions
+  int surface_side = 8;           ///< HideOptions
+  double part_size = 16;          ///< HideOptions
+  double triangle_part_size = 4;  ///< the same for triangles, each of which is looked at voxel by voxel
   std::function<void(double done)> progress = {};
   const std::atomic<bool>* stop = nullptr;
 };
@@ -20,15 +22,13 @@ struct BoundOptions {
 /// What of a scene may be seen from a cell, at most.
 struct CellBound {
   std::vector<uint32_t> triangles;  ///< not proved hidden: ascending
-  uint64_t inner_voxels = 0;   ///< opaque: no triangle meets them, and the cell's space does not reach them
-  uint64_t hidden_voxels = 0;  ///< others that are proved hidden
-  bool is_walled_in = false;   ///< all voxels of the cell are met by triangles: nothing was proved
-  double seconds = 0;
+  uint64_t opaque_voxels = 0;       ///< of innerVoxels; none: nothing can be proved
+  uint64_t hidden_voxels = 0;       ///< others that are proved hidden
 };
 
 /// The voxels that are opaque to the cell: no triangle (that stops rays) meets them, and no path from face to
 /// face of voxels without leads to them from the cell, inside of the box around the cell and the scene, which
-/// no segment between the two leaves.
+/// no segment between the two leaves. None if triangles meet all of the cell's voxels.
 BlockedSpace innerVoxels(const BoundScene& scene, const ViewCell& cell,
                          const std::atomic<bool>* stop = nullptr);
 
@@ -39,5 +39,9 @@ BlockedSpace innerVoxels(const BoundScene& scene, const ViewCell& cell,
 /// The cell is in the scene's space (Scene::offset taken off). The same on any number of threads. Throws
 /// Interrupted.
 CellBound boundCell(const BoundScene& scene, const ViewCell& cell, const BoundOptions& options = {});
+
+/// The same by other opaque voxels.
+CellBound boundCell(const BoundScene& scene, const ViewCell& cell, BlockedSpace&& opaque,
+                    const BoundOptions& options = {});
 
 }  // namespace sightline

@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <glm/glm.hpp>
 #include <span>
@@ -33,7 +34,9 @@ class CellHull {
  public:
   CellHull(const ViewCell& cell, const Lattice& lattice);
 
-  /// Its two halves, cut across its longest side.
+  /// Its longest side.
+  double longest() const { return 2 * std::max({half_size_.x, half_size_.y, half_size_.z}); }
+  /// Its two halves, cut across that side.
   std::array<CellHull, 2> halves() const;
 
   /// The smallest box around it, rounded outwards.

@@ -18,7 +18,10 @@ constexpr size_t kBlocksATime = 256;  // between two looks at `stop`
 class BlockHiding {
  public:
   BlockHiding(const CellHull& hull, const HideOptions& options, const BlockedSpace& blocked)
-      : hull_(hull), options_(options), view_(blocked), search_(hull, options.cuts, options.region, view_) {}
+      : hull_(hull),
+        options_(options),
+        view_(blocked),
+        search_(hull, options.part_size, options.region, view_) {}
 
   /// surface: of the block, nullptr: none. false: nothing was hidden.
   bool run(const glm::ivec3& place, const VoxelBlock* surface, OpenBlock& own) {
@@ -49,7 +52,7 @@ class BlockHiding {
       is_changed_ = true;
       return;
     }
-    if (side <= options_.least_side) return;
+    if (side <= options_.surface_side) return;
     // From near to far, so that the nearer ones may hide the others.
     const int half = side / 2;
     const glm::ivec3 far(glm::lessThan(low + double(half), hull_.center()));

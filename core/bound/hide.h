@@ -11,9 +11,9 @@ namespace sightline {
 struct HideOptions {
   /// All segments that matter lie within these voxels: the box around cell and scene.
   VoxelBox region;
-  int free_side = 4;  ///< cubes without triangles are not looked into below this side: a power of two
-  int least_side = 1;
-  int cuts = 3;  ///< the cell is looked at in up to 2^cuts parts
+  int free_side = 16;     ///< cubes without triangles are not looked into below this side: a power of two
+  int surface_side = 8;   ///< nor are others below this one
+  double part_size = 16;  ///< of parts of the cell, in voxels: LayerSearch
   /// Told, on the caller's thread, how much of the work is done: 0 to 1, ascending.
   std::function<void(double done)> progress = {};
   const std::atomic<bool>* stop = nullptr;  ///< ends it with Interrupted when it becomes true

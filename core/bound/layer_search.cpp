@@ -25,8 +25,10 @@ VoxelBox layersBetween(const RealBox& cell, const RealBox& box) {
 
 }  // namespace
 
-LayerSearch::LayerSearch(const CellHull& hull, int cuts, const VoxelBox& region, BlockedView& view)
+LayerSearch::LayerSearch(const CellHull& hull, double part_size, const VoxelBox& region, BlockedView& view)
     : region_(region), view_(view) {
+  int cuts = 0;
+  for (CellHull part = hull; part.longest() > part_size && cuts < kMostCuts; ++cuts) part = part.halves()[0];
   parts_.push_back({hull, {}});
   for (size_t i = 0; parts_.size() + 1 < size_t(2) << cuts; ++i) {
     for (const CellHull& half : parts_[i].hull.halves()) parts_.push_back({half, {}});
@@ -48,13 +50,13 @@ bool LayerSearch::isCovered(Part& part, const RealBox& box, int axis, int at) {
   return true;
 }
 
-bool LayerSearch::hidesFrom(size_t index, const RealBox& box) {
+LayerSearch::Result LayerSearch::lookFrom(size_t index, const RealBox& box) {
   Part& part = parts_[index];
   const VoxelBox between = layersBetween(part.hull.box(), box);
   const int last_axis = std::max(part.last.axis, 0);
   if (part.last.axis >= 0 && part.last.at >= between.low[last_axis] &&
       part.last.at <= between.high[last_axis] && isCovered(part, box, last_axis, part.last.at))
-    return true;
+    return Result::kHidden;
 
   // Along the segment from the box's middle to the cell's, which share is a place on it.
   const glm::dvec3 from = 0.5 * (box.low + box.high), way = part.hull.center() - from;
@@ -68,7 +70,7 @@ bool LayerSearch::hidesFrom(size_t index, const RealBox& box) {
     if (cube.blocked && run < 0) run = share;
     is_blocked = is_blocked || cube.blocked;
     if (!cube.blocked && run >= 0) {
-      if (tryRun(part, box, between, from, way, run, share)) return true;
+      if (tryRun(part, box, between, from, way, run, share)) return Result::kHidden;
       run = -1;
     }
     double end = 1;
@@ -79,10 +81,11 @@ bool LayerSearch::hidesFrom(size_t index, const RealBox& box) {
     }
     share = std::max(end, share) + nudge;
   }
-  if (run >= 0 && tryRun(part, box, between, from, way, run, 1)) return true;
-  // A segment that nothing blocks shows that the box is not hidden.
-  return is_blocked && 2 * index + 2 < parts_.size() && hidesFrom(2 * index + 1, box) &&
-         hidesFrom(2 * index + 2, box);
+  if (run >= 0 && tryRun(part, box, between, from, way, run, 1)) return Result::kHidden;
+  if (!is_blocked) return Result::kFree;
+  if (2 * index + 2 >= parts_.size()) return Result::kOpen;
+  const Result half = lookFrom(2 * index + 1, box);
+  return half == Result::kHidden ? lookFrom(2 * index + 2, box) : half;
 }
 
 // Some layers across the blocked part of the segment from `near` (the box) to `far` (the cell).

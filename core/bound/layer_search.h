@@ -9,13 +9,19 @@ namespace sightline {
 /// Looks for layers of voxels that hide boxes from a cell. For one thread.
 class LayerSearch {
  public:
-  /// All must outlive it. region: holds all segments. cuts: the cell may be cut into 2^cuts parts.
-  LayerSearch(const CellHull& hull, int cuts, const VoxelBox& region, BlockedView& view);
+  /// view must outlive it. region: holds all segments. Where the cell as a whole does not do, it is cut into
+  /// parts, each of which may have a layer of its own, until they are no longer than part_size in voxels (but
+  /// 2^kMostCuts parts at most).
+  LayerSearch(const CellHull& hull, double part_size, const VoxelBox& region, BlockedView& view);
+
+  static constexpr int kMostCuts = 8;
 
   /// Whether all segments from the cell to the box were found to cross blocked voxels.
-  bool hides(const RealBox& box) { return hidesFrom(0, box); }
+  bool hides(const RealBox& box) { return lookFrom(0, box) == Result::kHidden; }
 
  private:
+  /// kFree: a segment crosses none, or hardly any.
+  enum class Result { kHidden, kOpen, kFree };
   struct Layer {
     int axis = -1, at = 0;
   };
@@ -24,7 +30,7 @@ class LayerSearch {
     Layer last;  ///< that hid the box before from it: often hides the next one, too
   };
 
-  bool hidesFrom(size_t part, const RealBox& box);
+  Result lookFrom(size_t part, const RealBox& box);
   bool isCovered(Part& part, const RealBox& box, int axis, int at);
   bool tryRun(Part& part, const RealBox& box, const VoxelBox& between, const glm::dvec3& from,
               const glm::dvec3& way, double near, double far);

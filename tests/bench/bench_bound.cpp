@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <ctime>
 #include <string>
 
@@ -74,8 +75,10 @@ double processorSeconds() {
   return double(std::clock()) / CLOCKS_PER_SEC;
 }
 
+using Clock = std::chrono::steady_clock;
+
 void run(const std::string& scene_file, const std::string& cells_file, const std::string& pvs_file,
-         double voxel, int free_side, int least_side, int cuts, int segments, const std::string& only) {
+         double voxel, const BoundOptions& options, int segments, const std::string& only) {
   const Scene scene = loadScene(scene_file);
   const PvsFile pvs = loadPvs(pvs_file);
   double begun = processorSeconds();
@@ -90,20 +93,18 @@ void run(const std::string& scene_file, const std::string& cells_file, const std
                                     [&](const CellPvs& c) { return c.cell.name == cell.name; });
     if (baked == pvs.cells.end() || (!only.empty() && only != cell.name)) continue;
     begun = processorSeconds();
-    BoundOptions options;
-    options.free_side = free_side;
-    options.cuts = cuts;
-    options.least_side = least_side;
+    const auto start = Clock::now();
     const CellBound bound = boundCell(voxels, cell, options);
-    const double processor = processorSeconds() - begun;
+    const double processor = processorSeconds() - begun,
+                 seconds = std::chrono::duration<double>(Clock::now() - start).count();
     std::vector<uint32_t> leaks;
     std::set_difference(baked->triangles.begin(), baked->triangles.end(), bound.triangles.begin(),
                         bound.triangles.end(), std::back_inserter(leaks));
     const double all = scene.triangleCount(), hidden = all - double(baked->triangles.size());
     fmt::print("| {} | {} | {} | {} | {:.1f} % | {:.2f} | {:.2f} | {} | {:.2f} | {:.2f} | {} |\n", cell.name,
                baked->triangles.size(), bound.triangles.size(), hidden,
-               100 * (all - double(bound.triangles.size())) / hidden, double(bound.inner_voxels) * 1e-6,
-               double(bound.hidden_voxels) * 1e-6, leaks.size(), bound.seconds, processor,
+               100 * (all - double(bound.triangles.size())) / hidden, double(bound.opaque_voxels) * 1e-6,
+               double(bound.hidden_voxels) * 1e-6, leaks.size(), seconds, processor,
                reachable(voxels, cell, bound.triangles, segments));
     std::fflush(stdout);
   }
@@ -113,21 +114,21 @@ void run(const std::string& scene_file, const std::string& cells_file, const std
 }  // namespace sightline
 
 int main(int argc, char** argv) {
-  std::string scene, cells, pvs;
+  std::string scene, cells, pvs, only;
   double voxel = 0.5;
-  int free_side = 16, least_side = 1, cuts = 3, segments = 256;
-  std::string only;
+  int segments = 256;
+  sightline::BoundOptions options;
   CLI::App app("What is proved hidden from view cells, beside a bake of them", "bench_bound");
   app.add_option("scene", scene)->required();
   app.add_option("cells", cells)->required();
   app.add_option("--pvs", pvs, "a bake of the cells")->required();
   app.add_option("--voxel", voxel)->capture_default_str();
-  app.add_option("--free-side", free_side)->capture_default_str();
-  app.add_option("--cuts", cuts)->capture_default_str();
-  app.add_option("--segments", segments)->capture_default_str();
-  app.add_option("--least-side", least_side)->capture_default_str();
+  app.add_option("--free-side", options.free_side)->capture_default_str();
+  app.add_option("--surface-side", options.surface_side)->capture_default_str();
+  app.add_option("--part-size", options.part_size)->capture_default_str();
+  app.add_option("--triangle-part-size", options.triangle_part_size)->capture_default_str();
+  app.add_option("--segments", segments, "to each triangle of the bound: 0, none")->capture_default_str();
   app.add_option("--cell", only);
-  return sightline::benchMain(app, argc, argv, [&] {
-    sightline::run(scene, cells, pvs, voxel, free_side, least_side, cuts, segments, only);
-  });
+  return sightline::benchMain(app, argc, argv,
+                              [&] { sightline::run(scene, cells, pvs, voxel, options, segments, only); });
 }
