@@ -94,6 +94,9 @@ static void enterInstance8(SceneRef scene, const RayPacket* rays, uint number, P
 #define SL_WALK_PARAM , const RayPacket* rays
 #define SL_VISIT(i) enterInstance8(scene, rays, scene.instance_order[i], p)
 #include "cl_kernels/packet_walk.inl"
+#undef SL_WALK
+#undef SL_WALK_PARAM
+#undef SL_VISIT
 
 static inline void tracePacket(SceneRef scene, const RayPacket* rays, Packet* p) {
   walkInstances8(scene, scene.root, p, rays);
