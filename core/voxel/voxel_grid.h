@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/voxel/lattice.h"
+#include "core/voxel/voxel_box.h"
 
 namespace sightline {
 
@@ -36,6 +37,9 @@ struct VoxelBlock {
   std::vector<VoxelBrick> bricks;  ///< ascending in place
   std::vector<uint32_t>
       triangles;  ///< ids of those that meet one of its voxels, ascending; empty if not asked for
+  std::vector<uint32_t> normals;  ///< of each voxel by its rank (VoxelRanks), as packNormal makes them;
+                                  ///< empty if not asked for (core/voxel/voxel_attributes.h)
+  std::vector<uint32_t> objects;  ///< likewise: places in Scene::objects
 
   uint64_t count() const {
     uint64_t sum = 0;
@@ -61,6 +65,11 @@ struct VoxelGrid {
     return sum;
   }
 };
+
+/// The smallest box that holds the block's voxels.
+VoxelBox boxOf(const VoxelBlock& block);
+/// And a grid's.
+VoxelBox boxOf(const VoxelGrid& grid);
 
 /// Finds voxels of a grid, which must stay where it is. For use by many threads at once.
 class VoxelLookup {
