@@ -12,7 +12,8 @@ SoftwareImage::SoftwareImage(const Scene& scene) : scene_(scene) {
   if (scene.surfaces.empty()) return;
   std::vector<uint32_t> order(scene.triangleCount());
   std::iota(order.begin(), order.end(), 0u);
-  surfaces_ = packSurfaces(scene.hasInstances() ? flatSurfaces(scene) : scene.surfaces, order);
+  const Surfaces flat = scene.hasInstances() ? flatSurfaces(scene) : Surfaces();
+  surfaces_ = packSurfaces(scene.hasInstances() ? flat : scene.surfaces, order);
 }
 
 void SoftwareImage::begin(const Camera& camera) {

@@ -181,7 +181,7 @@ GltfFile leafyForest() {
 
 Scene loadCulled(const GltfFile& file, bool flatten) {
   const Folder folder;
-  return loadScene(folder.write("forest.glb", file.glb()), {.flatten = flatten, .cull_back_faces = true});
+  return loadScene(folder.write("forest.glb", file.glb()), {.cull_back_faces = true, .flatten = flatten});
 }
 
 TEST(InstancesInFiles, HaveHolesGlassAndSides) {
