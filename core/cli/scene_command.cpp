@@ -105,7 +105,7 @@ void run(const SceneArguments& arguments) {
   printSize(arguments.output, scene.triangleCount(), scene.vertexCount(), scene.objects.size(),
             sceneBounds(scene));
   if (!scene.surfaces.empty()) {
-    const SurfaceCounts counts = countSurfaces(scene.surfaces);
+    const SurfaceCounts counts = countSurfaces(scene);
     fmt::print("{}: {} triangles have holes, {} are glass\n", arguments.output, counts.masked, counts.glass);
   }
   if (scene.hasInstances()) {
