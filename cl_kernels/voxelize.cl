@@ -64,9 +64,9 @@ typedef struct Planes {
   uint family;
 } Planes;
 
-static inline uint rowsOf(VoxelPlace low, VoxelPlace high) {
-  if (low.x > high.x || low.y > high.y || low.z > high.z) return 0;
-  return (uint)((high.y - low.y + 1) * (high.z - low.z + 1));
+static inline uint rowsOf(PlaceBox box) {
+  if (box.low.x > box.high.x || box.low.y > box.high.y || box.low.z > box.high.z) return 0;
+  return (uint)((box.high.y - box.low.y + 1) * (box.high.z - box.low.z + 1));
 }
 
 #if SL_SEPARATION == 0
@@ -93,8 +93,7 @@ static inline Planes planesOf(const VoxelTriangle* t, uint pair, uint family) {
   p.planes.count = 0;
   p.planes.empty = false;
   p.planes.open = false;
-  p.planes.low = t->low;
-  p.planes.high = t->high;
+  p.planes.box = t->box;
   if (!t->straight) p.planes = meetingPlanes(*t);
 #else
   p.planes = targetPlanes(*t, alongOf(family));
@@ -111,7 +110,7 @@ static inline Planes planesOf(const VoxelTriangle* t, uint pair, uint family) {
 static inline VoxelRun openRow(const Target* target, uint pair, uint family, int y, int z) {
   const VoxelTriangle t = triangleAt(target, pair);
   const Planes p = planesOf(&t, pair, family);
-  VoxelRun run = {p.planes.low.x, p.planes.high.x, false};
+  VoxelRun run = {p.planes.box.low.x, p.planes.box.high.x, false};
   bool open = false;
   for (int i = 0; i < p.planes.count && run.low <= run.high; ++i) {
     run.open = false;
@@ -134,12 +133,12 @@ static inline VoxelRun openRow(const Target* target, uint pair, uint family, int
       if (lane == 0) listOpen(target, p->pair, ALL_ROWS);                                             \
       return;                                                                                         \
     }                                                                                                 \
-    const uint rows = rowsOf(p->planes.low, p->planes.high);                                                        \
-    const uint width = (uint)(p->planes.high.y - p->planes.low.y + 1);                                              \
+    const uint rows = rowsOf(p->planes.box);                                                        \
+    const uint width = (uint)(p->planes.box.high.y - p->planes.box.low.y + 1);                                              \
     for (uint row = lane; row < rows; row += lanes) {                                                 \
-      const int y = p->planes.low.y + (int)(row % width);                                                    \
-      const int z = p->planes.low.z + (int)(row / width);                                                    \
-      VoxelRun run = {p->planes.low.x, p->planes.high.x, false};                                                    \
+      const int y = p->planes.box.low.y + (int)(row % width);                                                    \
+      const int z = p->planes.box.low.z + (int)(row / width);                                                    \
+      VoxelRun run = {p->planes.box.low.x, p->planes.box.high.x, false};                                                    \
       for (int i = 0; i < p->planes.count && run.low <= run.high; ++i)                                \
         run = narrowRow(run, p->planes.at[i], p->inverse[i], y, z);                                   \
       if (run.open && run.low <= run.high) run = openRow(target, p->pair, p->family, y, z);           \
@@ -193,7 +192,7 @@ __kernel void voxelizeBlocks(__global const float* positions, __global const uin
     const uint pair = begin + lane;
     if (pair < end) {
       const VoxelTriangle t = triangleAt(&target, pair);
-      const uint rows = rowsOf(t.low, t.high);
+      const uint rows = rowsOf(t.box);
       // An open normal matters only where the triangle's box alone does not tell.
       if (t.open && (SL_SEPARATION != 0 || !t.straight)) {
         listOpen(&target, pair, ALL_ROWS);
