@@ -173,7 +173,11 @@ void showVoxels(const std::filesystem::path& file) {
   const double size = head.lattice.voxelSize();
   row("bounds", farPoint(glm::dvec3(box.low) * size + head.offset) + " to " +
                     farPoint(glm::dvec3(box.high + 1) * size + head.offset));
-  row("triangles", head.has_triangles ? "ids in each block" : "no ids");
+  row("voxels are", head.separation == Separation::kConservative ? "all that a triangle meets"
+                    : head.separation == Separation::k26         ? "those of a 26-separating set"
+                                                                 : "those of a 6-separating set");
+  row("blocks have", fmt::format("{}{}{}", head.has_triangles ? "ids of triangles" : "no ids",
+                                 head.has_normals ? ", normals" : "", head.has_objects ? ", objects" : ""));
   for (size_t level = 0; level < voxels.levels.size(); ++level) {
     const VoxelGrid& grid = voxels.levels[level];
     row(level == 0 ? "levels" : "",
