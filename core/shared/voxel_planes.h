@@ -133,8 +133,8 @@ SL_FUNC int highestVoxel(SL_REAL high) {
   return -ceilingOf(-high);
 }
 
-/// In 64 x 64 x layers voxels from the base on, layers <= 64.
-SL_FUNC VoxelTriangle voxelTriangle(RealPoint a, RealPoint b, RealPoint c, VoxelPlace base, int layers) {
+/// In so many voxels from the base on.
+SL_FUNC VoxelTriangle voxelTriangle(RealPoint a, RealPoint b, RealPoint c, VoxelPlace base, VoxelPlace size) {
   VoxelTriangle t;
   t.a = a;
   t.b = b;
@@ -150,14 +150,15 @@ SL_FUNC VoxelTriangle voxelTriangle(RealPoint a, RealPoint b, RealPoint c, Voxel
   high.z = highestVoxel(largerOf(largerOf(a.z, b.z), c.z)) - base.z;
   t.straight = (high.x == low.x ? 1 : 0) + (high.y == low.y ? 1 : 0) + (high.z == low.z ? 1 : 0) >= 2;
   // The corners are in the box, and so is every voxel that is asked, or in the block.
-  int farthest = max(max(max(-low.x, -low.y), max(-low.z, high.x)), max(max(high.y, high.z), 64));
-  t.size = slReal(farthest) + slReal(67);
+  int farthest = max(max(max(-low.x, -low.y), max(-low.z, high.x)), max(high.y, high.z));
+  farthest = max(farthest, max(max(size.x, size.y), size.z));
+  t.size = slReal(farthest) + slReal(3);
   t.box.low.x = max(low.x, 0);
   t.box.low.y = max(low.y, 0);
   t.box.low.z = max(low.z, 0);
-  t.box.high.x = min(high.x, 63);
-  t.box.high.y = min(high.y, 63);
-  t.box.high.z = min(high.z, layers - 1);
+  t.box.high.x = min(high.x, size.x - 1);
+  t.box.high.y = min(high.y, size.y - 1);
+  t.box.high.z = min(high.z, size.z - 1);
   t.normal = triangleNormal(a, b, c);
   t.signs = normalSigns(t.normal, a, b, c);
   t.open = t.signs.x == kOpenSign || t.signs.y == kOpenSign || t.signs.z == kOpenSign;
