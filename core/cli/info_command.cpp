@@ -97,7 +97,7 @@ void showScene(const std::filesystem::path& file, const SceneLoadOptions& option
   if (scene.single_sided_triangles != 0) {
     row("single-sided", fmt::format("{} triangles", scene.single_sided_triangles));
   }
-  const SurfaceCounts surfaces = countSurfaces(scene.surfaces);
+  const SurfaceCounts surfaces = countSurfaces(scene);
   if (!scene.surfaces.empty()) {
     row("surfaces", fmt::format("{} triangles with holes, {} seen through, {} not there from behind",
                                 surfaces.masked, surfaces.glass, surfaces.front_only));
