@@ -12,6 +12,7 @@
 #include "core/base/interrupted.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"
+#include "core/cli/free_cells.h"
 #include "core/cli/free_side_option.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
@@ -43,6 +44,7 @@ struct CellsArguments {
   std::filesystem::path walk;
   PathOptions path_options;
   std::optional<double> margin;
+  FreeCellsArguments free;
 };
 
 /// So many cells are named one by one that were left out.
@@ -96,10 +98,18 @@ std::vector<ViewCell> runGrid(const Scene& scene, const GridOptions& options, Gr
 
 std::vector<ViewCell> placeGrid(const Scene& scene, const CellsArguments& arguments) {
   GridCounts counts;
-  std::vector<ViewCell> cells = runGrid(scene, gridOptions(arguments, scene.offset), counts);
-  const std::string line = fmt::format(
-      "{} boxes: {} kept, {} met by triangles, {} with nothing below, {} too high, {} inside of solids",
-      counts.boxes, counts.kept, counts.blocked, counts.nothing_below, counts.too_high, counts.in_solid);
+  GridOptions options = gridOptions(arguments, scene.offset);
+  std::unique_ptr<FreeSpace> free;
+  if (!arguments.free.reach.empty()) {
+    free = findReached(scene, arguments.free, std::min({options.size.x, options.size.y, options.size.z}) / 8);
+    options.space = &*free->space;
+  }
+  std::vector<ViewCell> cells = runGrid(scene, options, counts);
+  const std::string line =
+      fmt::format("{} boxes: {} kept, {} met by triangles, {} with nothing below, {} too high, {}",
+                  counts.boxes, counts.kept, counts.blocked, counts.nothing_below, counts.too_high,
+                  free ? fmt::format("{} not reached", counts.not_reached)
+                       : fmt::format("{} inside of solids", counts.in_solid));
   if (cells.empty()) {
     throw Error("no free box in the grid (" + line + "); try a smaller size, another --origin" +
                 (counts.in_solid > 0 ? ", or --free-side" : ""));
@@ -183,12 +193,21 @@ std::vector<ViewCell> placeWalk(const Scene& scene, const CellsArguments& argume
 
 std::vector<ViewCell> placeCells(const Scene& scene, const CellsArguments& arguments) {
   if (!arguments.grid.empty()) return placeGrid(scene, arguments);
+  if (arguments.free.floor) {
+    return placeOnFloor(scene, arguments.free, arguments.margin, arguments.grid_options.free_side);
+  }
   return arguments.walk.empty() ? placePath(scene, arguments) : placeWalk(scene, arguments);
 }
 
 void run(const CellsArguments& arguments) {
-  if (int(arguments.grid.empty()) + int(arguments.path.empty()) + int(arguments.walk.empty()) != 2) {
-    throw Error("cells: takes one of --grid, --path and --walk (see: sightline cells --help)", kExitUsage);
+  const int ways = int(!arguments.grid.empty()) + int(!arguments.path.empty()) +
+                   int(!arguments.walk.empty()) + int(arguments.free.floor.has_value());
+  if (ways != 1) {
+    throw Error("cells: takes one of --grid, --floor, --path and --walk (see: sightline cells --help)",
+                kExitUsage);
+  }
+  if (!arguments.free.reach.empty() && arguments.grid.empty() && !arguments.free.floor) {
+    throw Error("cells: --reach is of --grid and --floor", kExitUsage);
   }
   std::vector<std::filesystem::path> inputs(arguments.path.begin(), arguments.path.end());
   inputs.push_back(arguments.scene);
@@ -249,8 +268,7 @@ void declareGrid(CLI::App& command, CellsArguments& a) {
                   "Only boxes with something at most so far below them (default: any)")
       ->needs(grid);
   declareFreeSide(command, a.grid_options.free_side,
-                  "front: keep boxes that see front faces; back: that see back faces; any: both")
-      ->needs(grid);
+                  "front: keep boxes that see front faces; back: that see back faces; any: both");
 }
 
 void declarePath(CLI::App& command, CellsArguments& a) {
@@ -283,6 +301,7 @@ void addCellsCommand(CLI::App& app) {
                       "(default: a hundredth of their smallest extent)");
   declareLoading(*command, a->load);
   declareGrid(*command, *a);
+  declareFreeCells(*command, a->free);
   declarePath(*command, *a);
   command->footer(kCellsFooter);
   command->callback([a] { run(*a); });

@@ -125,6 +125,18 @@ SpaceCounts VoxelSpace::counts() const {
   return counts;
 }
 
+void VoxelSpace::bitsOf(const glm::ivec3& place, BlockBits& free, BlockBits& surface) const {
+  surface.clear();
+  free.clear();
+  if (const VoxelBlock* block = lookup_.block(place)) surface.insert(block->bricks);
+  const Share inner = innerInBlock(place);
+  if (inner == Share::kAll) return;
+  if (inner == Share::kSome) packed_[inner_[indexOf(place)] - kPacked].addTo(free);
+  for (int z = 0; z < kBlockSide; ++z) {
+    for (int y = 0; y < kBlockSide; ++y) free.row(y, z) = ~(free.row(y, z) | surface.row(y, z));
+  }
+}
+
 void VoxelSpace::setInner(const glm::ivec3& block, Share share, PackedBlock&& packed) {
   uint32_t& inner = inner_[indexOf(block)];
   inner = share == Share::kNone ? kNone : share == Share::kAll ? kAll : kPacked + uint32_t(packed_.size());

@@ -42,6 +42,8 @@ class VoxelSpace {
   Share innerInBlock(const glm::ivec3& place) const;
   /// Of the smallest box around the surface's voxels.
   SpaceCounts counts() const;
+  /// The voxels of a block that are free, and those that a triangle meets.
+  void bitsOf(const glm::ivec3& place, BlockBits& free, BlockBits& surface) const;
 
   /// For who makes one: what is inner in a block; not for use by many threads at once.
   void setInner(const glm::ivec3& block, Share share, PackedBlock&& packed = {});

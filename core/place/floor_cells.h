@@ -1,0 +1,62 @@
+#pragma once
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "bvh/bvh.h"
+#include "core/cell/view_cell.h"
+#include "core/scene/in_solid.h"
+#include "core/scene/scene.h"
+#include "core/voxel/floor.h"
+
+namespace sightline {
+
+struct FloorCellOptions {
+  double largest = 4;  ///< sides of a cell, seen from above, at most
+  double least = 0.5;  ///< and at least: what is narrower is not covered
+  double eye = 1.6;    ///< of the eye above the floor; above 0
+  double head = 1.8;   ///< of the cells, and of the space that must be free above the floor; at least eye
+  double step = 0.4;   ///< by which the floor under a cell may rise; less than eye, at most half of head
+  /// How far cells keep from triangles, at most an eighth of `least`; 0: as far as their voxels do. Not set:
+  /// defaultMargin (core/place/clear_box.h).
+  std::optional<double> margin;
+  /// Leave out cells inside of solids by the rays of inSolid (core/scene/in_solid.h), and the tiles under
+  /// them.
+  FreeSide free_side = FreeSide::kAny;
+  std::function<void(double done)> progress = {};  ///< on the caller's thread, 0 to 1, ascending
+  const std::atomic<bool>* stop = nullptr;         ///< ends it with Interrupted when it becomes true
+};
+
+struct FloorCells {
+  std::vector<ViewCell> cells;
+  uint64_t tiles = 0;     ///< of the floor
+  uint64_t covered = 0;   ///< of them: the eye of who stands on its middle is in a cell
+  uint64_t inset = 0;     ///< cells that are smaller, for the margin
+  uint64_t in_solid = 0;  ///< cells that were left out for free_side
+};
+
+/// What the lengths are in voxels.
+FloorOptions floorOptions(const Lattice& lattice, const FloorCellOptions& options);
+
+/// View cells where one walks: boxes that stand on the floor, up to head, each over tiles that are neighbours
+/// and without a gap, not higher under one place than `step` above another, so that it holds the eye of who
+/// stands anywhere under it. Seen from above they do not overlap. The largest comes first, then the largest
+/// of what is left, cut around what stands on the floor, down to `least`. Made of voxels that no triangle
+/// meets, with their sides in by the margin where triangles are near, they hold no triangle, no part of
+/// anything solid, and are over no hole.
+///
+/// Named floor-1, floor-2, ... by height, then z, then x. floor: of this scene's voxels on this lattice,
+/// found with floorOptions. bvh is of this scene. The same on any number of threads. Throws Error (exit code
+/// 2) for lengths out of their ranges, or of less than a voxel; and Interrupted.
+FloorCells floorCells(const Scene& scene, const Bvh& bvh, const Lattice& lattice, const Floor& floor,
+                      const FloorCellOptions& options);
+
+/// The tiles of the floor of which the eye of who stands on their middle is in a cell. Cells are boxes that
+/// are not turned.
+uint64_t coveredTiles(const Lattice& lattice, const Floor& floor, double eye,
+                      std::span<const ViewCell> cells);
+
+}  // namespace sightline
