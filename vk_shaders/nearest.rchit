@@ -1,8 +1,10 @@
 #version 460
-// Passes on what was hit; see trace.glsl.
+// Passes on what was hit; see payload.glsl.
+#extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_ray_tracing : require
-layout(location = 0) rayPayloadInEXT uvec3 found;
+#include "vk_shaders/payload.glsl"
+layout(location = 0) rayPayloadInEXT SL_PAYLOAD carried;
 
 void main() {
-  found = uvec3(floatBitsToUint(gl_HitTEXT), uint(gl_InstanceCustomIndexEXT), uint(gl_PrimitiveID));
+  carried.xyz = uvec3(floatBitsToUint(gl_HitTEXT), uint(gl_InstanceCustomIndexEXT), uint(gl_PrimitiveID));
 }

@@ -73,6 +73,11 @@ const uint kTheStage = 0u;
 /// The argument of its functions, likewise.
 const uint kTheSurfaces = 0u;
 
+/// The leaf of a primitive of an instance in the top level.
+uint leafOf(uint part, uint primitive) {
+  return Buffer_uint(SL_THE_LAUNCH.part_starts).at[part] + primitive;
+}
+
 /// Corner 0, 1 or 2 of the triangle in a leaf.
 vec3 leafCorner(uint leaf, uint corner) {
   Floats corners = Floats(SL_THE_LAUNCH.corners + uint64(kCornerBytes) * leaf);

@@ -126,14 +126,18 @@ void addSceneCommand(CLI::App& app) {
       ->add_option("--cells", arguments->cells,
                    "Also write ten view cells in the scene's free space to this .json file")
       ->check(notStandardOutput("the cells of a scene"));
+  CLI::Option* const walk =
+      command
+          ->add_option(
+              "--walk", arguments->walk,
+              "Also write a camera's walk through the scene's free space to this .json file: street level, a "
+              "fast turn, cuts, a rise over all")
+          ->check(notStandardOutput("the walk of a scene"));
   command
-      ->add_option(
-          "--walk", arguments->walk,
-          "Also write a camera's walk through the scene's free space to this .json file: street level, a "
-          "fast turn, cuts, a rise over all")
-      ->check(notStandardOutput("the walk of a scene"));
-  command->add_option("--frames", arguments->frames, "Of the walk")
+      ->add_option("--frames", arguments->frames,
+                   fmt::format("Of the walk, {} to {}", kMinWalkFrames, kMostPathFrames))
       ->transform(wholeNumber(kMinWalkFrames, kMostPathFrames))
+      ->needs(walk)
       ->capture_default_str();
   command->add_flag("--overwrite", arguments->overwrite, "Replace files that are there already");
   command->footer(footer());

@@ -275,8 +275,45 @@ void concludeWalk(const WalkCommand& command, const WalkReport& report, const St
   if (!past.empty()) throw ExitCode{kExitPastLimit};
 }
 
-void run(const WalkCommand& command) {
+/// An option that was given and that nothing in this run takes, a line each.
+void sayUnused(const CLI::App& given, const WalkCommand& command) {
+  const auto say = [&](const char* option, const std::string& takers) {
+    if (given.count(option) > 0) fmt::print("note: {} does nothing here: it is {}\n", option, takers);
+  };
+  const auto sayUnlessAny = [&](std::initializer_list<const char*> options,
+                                std::vector<std::string> methods) {
+    const bool any = asksForAll(command) || std::ranges::any_of(methods, [&](const std::string& name) {
+                       return std::ranges::find(command.methods, name) != command.methods.end();
+                     });
+    for (const char* option : options) {
+      if (!any) say(option, fmt::format("of {}", fmt::join(methods, ", ")));
+    }
+  };
+  sayUnlessAny({"--batch", "--assume", "--no-multiqueries", "--no-tight"}, {"chc++", "opti-chc++"});
+  sayUnlessAny({"--no-c-queue", "--no-batching", "--no-second-condition"}, {"opti-chc++"});
+  if (command.schedule == "fixed") {
+    sayUnlessAny({"--schedule"}, {"stop-and-wait", "chc", "chc++", "opti-chc++"});
+  }
+  std::vector<std::string> by_sets;
+  for (const WalkMethodInfo& info : walkMethods()) {
+    if (info.needs_pvs) by_sets.push_back(info.name);
+  }
+  const bool views = command.path.starts_with(kViewsPath);
+  sayUnlessAny({"--outside"}, by_sets);
+  if (command.pvs.empty() && asksForAll(command)) say("--outside", "of methods by sets (--pvs)");
+  if (!views) sayUnlessAny({"--pvs"}, by_sets);
+  if (command.pvs.empty()) say("--doors", "of sets (--pvs)");
+  if (!views) say("--views", "of --path views:CELL");
+  const bool checks = command.check == kAllMethods;
+  if (!checks) say("--trace-every", "of --check all");
+  if (command.pictures.empty() && (!checks || command.options.trace_every == 0)) {
+    say("--trace-device", "of traced frames and --pictures");
+  }
+}
+
+void run(const CLI::App& given, const WalkCommand& command) {
   checkMethods(command);
+  requireWalkDevice(command.device);
   const bool views = command.path.starts_with(kViewsPath);
   if (views && command.pvs.empty()) {
     throw Error("--path: views:CELL takes the cell of a bake: give it --pvs OUT.pvs", kExitUsage);
@@ -296,6 +333,7 @@ void run(const WalkCommand& command) {
   report.width = size.x, report.height = size.y;
   report.split = command.split;
   report.options = replayOptions(command);
+  sayUnused(given, command);
 
   Scene scene = loadScene(command.scene, command.load);
   std::optional<PvsFile> pvs;
@@ -347,6 +385,7 @@ void run(const WalkCommand& command) {
       replayWalk(*device, walk, report.frames, methods, report.options, tracer.get(), clock, hooks);
   status.end();
   std::fputs(walkTable(report).c_str(), stdout);
+  for (const std::string& note : walkNotes(report)) fmt::print("warning: {}\n", note);
   saveResults(command, outputs, report, walk, tracer.get());
   concludeWalk(command, report, stop);
 }
@@ -480,7 +519,7 @@ void addWalkCommand(CLI::App& app) {
   declareReplay(*command, *options);
   declareCulling(*command, *options);
   command->footer(walkFooter());
-  command->callback([options] { run(*options); });
+  command->callback([options, command] { run(*command, *options); });
 }
 
 }  // namespace sightline

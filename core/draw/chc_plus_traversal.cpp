@@ -48,16 +48,17 @@ void ChcPlusTraversal::checkQueries() {
   }
 }
 
-bool ChcPlusTraversal::firstArrived() {
-  return frame_.arrived(asked_.front().query, ticks_ - asked_.front().tick);
+bool ChcPlusTraversal::firstArrived(bool now) {
+  return frame_.arrived(asked_.front().query, ticks_ - asked_.front().tick, now);
 }
 
 /// Asks about visible leaves until the first answer is there.
 void ChcPlusTraversal::fillWait() {
-  while (!v_queue_.empty() && !firstArrived()) {
+  // Where each question is a submit, none may be asked for want of a look.
+  while (!v_queue_.empty() && !firstArrived(!options_.batching)) {
     if (asking_.empty()) beginBatch();
     ++ticks_;
-    ask({v_queue_.front()}, true);
+    ask(v_queue_.front(), true);
     v_queue_.pop_front();
     if (!options_.batching) submitAsked();
   }
@@ -65,12 +66,13 @@ void ChcPlusTraversal::fillWait() {
 }
 
 void ChcPlusTraversal::handleFirst() {
-  const Asked asked = std::move(asked_.front());
+  const Asked asked = asked_.front();
   asked_.pop_front();
   if (!frame_.visible(asked.query)) {
-    for (const uint32_t node : asked.nodes) ++states_[node].hidden_frames;
-  } else if (asked.nodes.size() == 1) {
-    const uint32_t node = asked.nodes[0];
+    for (uint32_t i = 0; i < asked.node_count; ++i)
+      ++states_[asked_nodes_[asked.first_node + i]].hidden_frames;
+  } else if (asked.node_count == 1) {
+    const uint32_t node = asked_nodes_[asked.first_node];
     becomeVisible(node);
     if (asked.retest) {
       states_[node].next_test = number_ + 1 + options_.assumed_frames;
@@ -79,12 +81,15 @@ void ChcPlusTraversal::handleFirst() {
     }
   } else {
     ++frame_.counts.failed_queries;
-    if (options_.c_queue) {
-      c_queue_.insert(c_queue_.end(), asked.nodes.begin(), asked.nodes.end());
-    } else {
-      for (const uint32_t node : asked.nodes) ask({node}, false);
-      submitAsked(options_.batching);
+    for (uint32_t i = 0; i < asked.node_count; ++i) {
+      const uint32_t node = asked_nodes_[asked.first_node + i];
+      if (options_.c_queue) {
+        c_queue_.push_back(node);
+      } else {
+        ask(node, false);
+      }
     }
+    if (!options_.c_queue) submitAsked(options_.batching);
   }
 }
 
@@ -93,7 +98,8 @@ void ChcPlusTraversal::visit(uint32_t index) {
   const BoxNode& node = tree_.nodes[index];
   if (!states_.mayShow(index, frame_.guard().frustum())) return;
   const bool was_visible = states_.visit(index, number_);
-  if (!frame_.guard().grown(node.box)) {
+  const auto grown = frame_.guard().grown(node.box);
+  if (!grown) {
     if (was_visible) {
       states_.pullUp(index);
     } else {
@@ -101,6 +107,7 @@ void ChcPlusTraversal::visit(uint32_t index) {
     }
     return open(index);
   }
+  states_[index].grown = *grown;
   if (!was_visible) {
     i_queue_.push_back(index);
     if (i_queue_.size() > options_.batch_size) issueMultiQueries();
@@ -138,21 +145,22 @@ void ChcPlusTraversal::issueMultiQueries() {
     return states_[a].hidden_frames > states_[b].hidden_frames;
   });
   std::vector<double> hidden;
+  hidden.reserve(i_queue_.size());
   for (const uint32_t node : i_queue_) hidden.push_back(stillHidden(states_[node].hidden_frames));
   for (size_t first = 0; first < i_queue_.size();) {
     const uint32_t count = options_.multi_queries ? multiQuerySize(std::span(hidden).subspan(first)) : 1;
-    ask({i_queue_.begin() + first, i_queue_.begin() + first + count}, false);
+    ask(std::span(i_queue_).subspan(first, count), false);
     first += count;
   }
   i_queue_.clear();
-  for (const uint32_t node : c_queue_) ask({node}, false);
+  for (const uint32_t node : c_queue_) ask(node, false);
   c_queue_.clear();
   submitAsked();
 }
 
 void ChcPlusTraversal::endFrame() {
   if (!v_queue_.empty()) beginBatch();
-  for (const uint32_t leaf : v_queue_) ask({leaf}, true);
+  for (const uint32_t leaf : v_queue_) ask(leaf, true);
   v_queue_.clear();
   placeAsked(frame_.finish());
   while (!asked_.empty()) handleFirst();  // re-tests only: nothing more is drawn
@@ -163,21 +171,22 @@ void ChcPlusTraversal::beginBatch() {
   if (!options_.batching) frame_.submit();
 }
 
-void ChcPlusTraversal::ask(std::vector<uint32_t> nodes, bool retest) {
-  std::vector<AxisBox> boxes;
+void ChcPlusTraversal::ask(std::span<const uint32_t> nodes, bool retest) {
+  boxes_.clear();
   for (const uint32_t index : nodes) {
     const BoxNode& node = tree_.nodes[index];
     const auto tight =
         options_.tight_bounds && !node.isLeaf() ? tree_.tightOf(node) : std::span<const AxisBox>();
-    // The node's own box grows (visit), and so do those in it, but for the last digit.
-    const AxisBox own = frame_.guard().grown(node.box).value();
-    if (tight.empty()) boxes.push_back(own);
-    for (const AxisBox& box : tight) boxes.push_back(frame_.guard().grown(box).value_or(own));
+    // The node's own box has grown (visit), and so do those in it, but for the last digit.
+    const AxisBox& own = states_[index].grown;
+    if (tight.empty()) boxes_.push_back(own);
+    for (const AxisBox& box : tight) boxes_.push_back(frame_.guard().grown(box).value_or(own));
   }
-  frame_.ask(std::move(boxes));
+  frame_.ask(boxes_);
   if (nodes.size() > 1) ++frame_.counts.multi_queries;
   if (retest) ++frame_.counts.retest_queries;
-  asking_.push_back({0, std::move(nodes), retest, 0});
+  asking_.push_back({0, uint32_t(asked_nodes_.size()), uint32_t(nodes.size()), retest, 0});
+  asked_nodes_.insert(asked_nodes_.end(), nodes.begin(), nodes.end());
 }
 
 void ChcPlusTraversal::submitAsked(bool draws) {
@@ -188,7 +197,7 @@ void ChcPlusTraversal::placeAsked(QueryId first) {
   for (Asked& asked : asking_) {
     asked.query = first++;
     asked.tick = ticks_;
-    asked_.push_back(std::move(asked));
+    asked_.push_back(asked);
   }
   asking_.clear();
 }

@@ -1,5 +1,6 @@
 #pragma once
 #include <deque>
+#include <span>
 #include <vector>
 
 #include "core/draw/cull_methods.h"
@@ -29,14 +30,14 @@ class ChcPlusTraversal {
   /// A query that has been submitted.
   struct Asked {
     QueryId query = 0;
-    std::vector<uint32_t> nodes;
-    bool retest = false;  ///< of a leaf that was visible, and is drawn already
-    uint64_t tick = 0;    ///< of its submit
+    uint32_t first_node = 0, node_count = 0;  ///< in asked_nodes_
+    bool retest = false;                      ///< of a leaf that was visible, and is drawn already
+    uint64_t tick = 0;                        ///< of its submit
   };
 
   void checkQueries();
   void fillWait();
-  bool firstArrived();
+  bool firstArrived(bool now = false);
   void handleFirst();
   void visit(uint32_t index);
   void open(uint32_t index);
@@ -44,7 +45,9 @@ class ChcPlusTraversal {
   void issueMultiQueries();
   void endFrame();
   void beginBatch();
-  void ask(std::vector<uint32_t> nodes, bool retest);
+  /// nodes: not of asked_nodes_.
+  void ask(std::span<const uint32_t> nodes, bool retest);
+  void ask(uint32_t node, bool retest) { ask({&node, 1}, retest); }
   void submitAsked(bool draws = true);
   void placeAsked(QueryId first);
   uint64_t jitter(uint32_t node) const;
@@ -58,6 +61,8 @@ class ChcPlusTraversal {
   NodeQueue nodes_;
   std::deque<uint32_t> v_queue_;
   std::vector<uint32_t> i_queue_, c_queue_;
+  std::vector<uint32_t> asked_nodes_;  ///< of all queries of the frame
+  std::vector<AxisBox> boxes_;         ///< of the last query; kept for its memory
   std::deque<Asked> asked_;
   std::vector<Asked> asking_;  ///< recorded for the next submit
   uint64_t ticks_ = 0;

@@ -63,7 +63,7 @@ class ChcTraversal {
       open(index);
       ++frame_.counts.retest_queries;
     }
-    frame_.ask({*grown});
+    frame_.ask(*grown);
     asked_.push_back({frame_.submit(), index, was_visible, ticks_});
   }
 

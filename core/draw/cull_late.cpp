@@ -20,7 +20,7 @@ class LateCulled : public CullMethod {
           const bool known = last.frame != kNever && last.frame + 1 == number;
           if (!known || backend.visible(last.query)) frame.draw(leaf.item);
           if (const auto grown = frame.guard().grown(leaf.box)) {
-            frame.ask({*grown});
+            frame.ask(*grown);
             asked.push_back(leaf.item);
           }
         });

@@ -21,7 +21,7 @@ class StopAndWaitCulled : public CullMethod {
       const BoxNode& node = scene_.tree.nodes[index];
       if (frame.guard().frustum().sideOf(node.box) == FrustumSide::outside) continue;
       if (const auto grown = frame.guard().grown(node.box)) {
-        frame.ask({*grown});
+        frame.ask(*grown);
         if (!frame.visible(frame.submit())) continue;
       }
       if (node.isLeaf()) {

@@ -3,6 +3,13 @@
 #include <algorithm>
 
 namespace sightline {
+namespace {
+
+/// Ticks from one look in vain for an answer to the next. A tick takes a fraction of a microsecond, and an
+/// answer some fifty: what comes so much later is not missed.
+constexpr uint32_t kTicksALook = 8;
+
+}  // namespace
 
 FrameRecorder::FrameRecorder(const Drawables& drawables, const Camera& camera, QueryBackend& backend,
                              std::vector<uint32_t>& drawn, const Schedule& schedule)
@@ -27,9 +34,10 @@ void FrameRecorder::draw(uint32_t drawable) {
   }
 }
 
-uint32_t FrameRecorder::ask(std::vector<AxisBox> boxes) {
-  asked_.push_back(std::move(boxes));
-  return static_cast<uint32_t>(asked_.size() - 1);
+uint32_t FrameRecorder::ask(std::span<const AxisBox> boxes) {
+  asked_boxes_.insert(asked_boxes_.end(), boxes.begin(), boxes.end());
+  asked_ends_.push_back(static_cast<uint32_t>(asked_boxes_.size()));
+  return static_cast<uint32_t>(asked_ends_.size() - 1);
 }
 
 QueryId FrameRecorder::submit(bool draws) {
@@ -43,26 +51,35 @@ QueryId FrameRecorder::submit(bool draws) {
 }
 
 void FrameRecorder::submitNow(const std::vector<uint32_t>& draws) {
-  if (draws.empty() && asked_.empty()) return;
-  std::vector<OcclusionQuery> queries;
-  queries.reserve(asked_.size());
-  for (const std::vector<AxisBox>& boxes : asked_) {
-    queries.push_back({boxes});
-    counts.query_boxes += boxes.size();
+  if (draws.empty() && !asksAnything()) return;
+  queries_.clear();
+  uint32_t begin = 0;
+  for (const uint32_t end : asked_ends_) {
+    queries_.push_back({std::span(asked_boxes_).subspan(begin, end - begin)});
+    begin = end;
   }
-  submitted_ = backend_.submit(draws, queries);
-  if (!queries.empty()) submit_ends_.push_back(submitted_ + queries.size());
+  counts.query_boxes += asked_boxes_.size();
+  submitted_ = backend_.submit(draws, queries_);
+  if (!queries_.empty()) submit_ends_.push_back(submitted_ + queries_.size());
   ++counts.submits;
-  counts.queries += queries.size();
+  counts.queries += queries_.size();
   counts.draws += draws.size();
   counts.objects += draws.size();
   for (const uint32_t d : draws) counts.triangles += drawables_.list[d].triangle_count;
   drawn_.insert(drawn_.end(), draws.begin(), draws.end());
-  asked_.clear();
+  asked_boxes_.clear();
+  asked_ends_.clear();
 }
 
-bool FrameRecorder::arrived(QueryId query, uint64_t ticks) {
-  return schedule_.fixed ? ticks >= schedule_.ticks : backend_.arrived(query);
+bool FrameRecorder::arrived(QueryId query, uint64_t ticks, bool now) {
+  if (schedule_.fixed) return ticks >= schedule_.ticks;
+  if (ticks_to_look_ > 0 && !now) {
+    --ticks_to_look_;
+    return false;
+  }
+  if (backend_.arrived(query)) return true;
+  ticks_to_look_ = kTicksALook - 1;
+  return false;
 }
 
 bool FrameRecorder::visible(QueryId query) {
@@ -103,7 +120,7 @@ QueryId FrameRecorder::finish() {
   std::reverse(masked_.begin(), masked_.end());
   sortBlended();
   // Queries must not see what is masked, so it goes into a submit of its own where any are left.
-  const bool apart = !asked_.empty();
+  const bool apart = asksAnything();
   if (apart) {
     submitNow(last);
     last.clear();

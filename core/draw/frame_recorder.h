@@ -25,17 +25,21 @@ class FrameRecorder {
   void draw(uint32_t drawable);
 
   /// Adds a query of boxes that BoxGuard has grown to the next submit. Returns its place in it, from 0.
-  uint32_t ask(std::vector<AxisBox> boxes);
+  uint32_t ask(std::span<const AxisBox> boxes);
+  uint32_t ask(const AxisBox& box) { return ask({&box, 1}); }
 
-  bool asksAnything() const { return !asked_.empty(); }
+  bool asksAnything() const { return !asked_ends_.empty(); }
   bool drawsAnything() const { return !render_queue_.empty(); }
 
   /// Submits the queries asked for, after the render queue unless `draws` is false. Returns the first one's
   /// id; what it returns without queries means nothing. Nothing to submit: does not.
   QueryId submit(bool draws = true);
 
-  /// Whether the answer has arrived, by the schedule. ticks: since its submit, of Schedule::ticks.
-  bool arrived(QueryId query, uint64_t ticks);
+  /// Whether the answer has arrived, by the schedule. ticks: since its submit, of Schedule::ticks. To be
+  /// asked at each tick: by the live schedule, who has looked in vain looks again some ticks later only, as
+  /// looking costs as much as a visit.
+  /// now: looks in any case.
+  bool arrived(QueryId query, uint64_t ticks, bool now = false);
 
   /// The answer, waited for. A wait is counted where it has not arrived or, by the fixed schedule, for the
   /// first answer of each submit.
@@ -60,7 +64,10 @@ class FrameRecorder {
   BoxGuard guard_;
   std::vector<uint32_t>& drawn_;
   std::vector<uint32_t> render_queue_, masked_, blended_;
-  std::vector<std::vector<AxisBox>> asked_;
+  std::vector<AxisBox> asked_boxes_;     ///< of all queries that wait
+  std::vector<uint32_t> asked_ends_;     ///< in asked_boxes_, one past the last of each query
+  std::vector<OcclusionQuery> queries_;  ///< of the last submit; kept for its memory
+  uint32_t ticks_to_look_ = 0;           ///< until the next look at whether an answer is there
   Schedule schedule_;
   QueryId submitted_ = 0;             ///< the first query of the last submit
   QueryId waited_for_ = 0;            ///< queries with lower numbers have been waited for

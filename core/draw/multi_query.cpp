@@ -17,6 +17,8 @@ uint32_t multiQuerySize(std::span<const double> hidden) {
   double best_value = 1, all_hidden = 1;
   for (uint32_t count = 1; count <= hidden.size(); ++count) {
     all_hidden *= hidden[count - 1];
+    // However many more there are, the value stays below 1 / (1 - all_hidden).
+    if (best_value * (1 - all_hidden) >= 1) break;
     const double value = multiQueryValue(count, all_hidden);
     if (value > best_value) {
       best = count;

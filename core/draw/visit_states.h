@@ -14,6 +14,7 @@ struct VisitState {
   bool inside = false;  ///< the image's sides cut nothing off its box, nor what is in it, in that frame
   uint32_t hidden_frames = 0;  ///< so many answers in a row were "hidden"
   uint64_t next_test = 0;      ///< leaves: the frame in which to ask again while it stays visible
+  AxisBox grown;  ///< its box (BoxGuard), in the frame of the last visit, if it can be asked about
 };
 
 /// The states of all nodes.

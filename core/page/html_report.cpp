@@ -25,8 +25,10 @@ std::string rowHtml(const ReportTable& table, const std::vector<std::string>& ce
     const bool text = i < table.text_columns;
     const char* tag = head || (text && i == 0) ? "th" : "td";
     const char* scope = head ? " scope=\"col\"" : text && i == 0 ? " scope=\"row\"" : "";
-    html +=
-        fmt::format("<{}{}{}>{}</{}>", tag, scope, text ? " class=\"left\"" : "", escapeHtml(cells[i]), tag);
+    const char* look = !text                                  ? ""
+                       : !head && i == 0 && table.short_names ? " class=\"left word\""
+                                                              : " class=\"left\"";
+    html += fmt::format("<{}{}{}>{}</{}>", tag, scope, look, escapeHtml(cells[i]), tag);
   }
   return html + "</tr>\n";
 }

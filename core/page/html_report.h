@@ -36,7 +36,8 @@ struct ReportTable {
   std::string caption = {};  ///< empty: none
   std::vector<std::string> columns = {};
   std::vector<std::vector<std::string>> rows = {};  ///< each as long as columns
-  size_t text_columns = 1;  ///< the first so many are text, to the left; the rest are numbers
+  size_t text_columns = 1;   ///< the first so many are text, to the left; the rest are numbers
+  bool short_names = false;  ///< the first column holds words of a few letters, in which no line may break
 };
 
 struct ChartPoint {

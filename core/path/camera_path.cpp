@@ -34,7 +34,9 @@ Problem frameProblem(const std::vector<PathKey>& keys, size_t i) {
         place, fmt::format("{} is not above {}, the frame of the key before it", frame, keys[i - 1].frame)};
   }
   if (frame >= kMostPathFrames) {
-    return PathProblem{place, fmt::format("{} makes a path of more than {} frames", frame, kMostPathFrames)};
+    // Without the number: of larger ones than fit, whoever read them knows only that they are past the limit.
+    return PathProblem{place,
+                       fmt::format("is past {}, the last frame that a path may have", kMostPathFrames - 1)};
   }
   return {};
 }

@@ -131,4 +131,33 @@ int orient3d(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, cons
   return exact3d(a, b, c, p);
 }
 
+int orientAlong(const ExactPoint& d, const ExactPoint& a, const ExactPoint& b, const ExactPoint& c) {
+  const double ux = a.x - c.x, uy = a.y - c.y, uz = a.z - c.z;
+  const double vx = b.x - c.x, vy = b.y - c.y, vz = b.z - c.z;
+  const double yz = uy * vz, zy = uz * vy, zx = uz * vx, xz = ux * vz, xy = ux * vy, yx = uy * vx;
+  const double determinant = (yz - zy) * d.x + (zx - xz) * d.y + (xy - yx) * d.z;
+  const double magnitude = (std::abs(yz) + std::abs(zy)) * std::abs(d.x) +
+                           (std::abs(zx) + std::abs(xz)) * std::abs(d.y) +
+                           (std::abs(xy) + std::abs(yx)) * std::abs(d.z);
+  if (std::abs(determinant) > kBound3 * magnitude) return signOf(determinant);
+  const Pair u[3] = {difference(a.x, c.x), difference(a.y, c.y), difference(a.z, c.z)};
+  const Pair v[3] = {difference(b.x, c.x), difference(b.y, c.y), difference(b.z, c.z)};
+  const double along[3] = {d.x, d.y, d.z};
+  Expansion<48> total;
+  for (int i = 0; i < 3; ++i) {
+    if (along[i] == 0) continue;
+    addProducts(total, u[(i + 1) % 3], v[(i + 2) % 3], along[i]);
+    addProducts(total, u[(i + 2) % 3], v[(i + 1) % 3], -along[i]);
+  }
+  return total.sign();
+}
+
+int signOfSum(double a, double b, double c, double d) {
+  const double sum = (a + b) + (c + d);
+  if (std::abs(sum) > 4 * kUnit * (std::abs(a) + std::abs(b) + std::abs(c) + std::abs(d))) return signOf(sum);
+  Expansion<4> total;
+  for (const double value : {a, b, c, d}) total.add(value);
+  return total.sign();
+}
+
 }  // namespace sightline

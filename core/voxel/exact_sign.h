@@ -18,4 +18,11 @@ struct ExactPoint {
 /// turn counterclockwise. Exact as orient2d.
 int orient3d(const ExactPoint& a, const ExactPoint& b, const ExactPoint& c, const ExactPoint& p);
 
+/// Sign of d . ((a - c) x (b - c)) for a d of components -1, 0 and 1: 1 if a, b, c turn counterclockwise as
+/// seen by who looks along -d. Exact as orient2d, which this is along an axis.
+int orientAlong(const ExactPoint& d, const ExactPoint& a, const ExactPoint& b, const ExactPoint& c);
+
+/// Sign of a + b + c + d. Exact as orient2d.
+int signOfSum(double a, double b, double c, double d);
+
 }  // namespace sightline

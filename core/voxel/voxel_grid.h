@@ -36,6 +36,9 @@ struct VoxelBlock {
   std::vector<VoxelBrick> bricks;  ///< ascending in place
   std::vector<uint32_t>
       triangles;  ///< ids of those that meet one of its voxels, ascending; empty if not asked for
+  std::vector<uint32_t> normals;  ///< of each voxel by its rank (VoxelRanks), as packNormal makes them;
+                                  ///< empty if not asked for (core/voxel/voxel_attributes.h)
+  std::vector<uint32_t> objects;  ///< likewise: places in Scene::objects
 
   uint64_t count() const {
     uint64_t sum = 0;
@@ -71,7 +74,7 @@ class VoxelLookup {
   bool contains(const glm::ivec3& voxel) const;
 
  private:
-  const VoxelGrid& grid_;
+  const VoxelGrid* grid_;
   std::unordered_map<uint64_t, uint32_t> places_;
 };
 

@@ -20,21 +20,27 @@ VoxelBox blocksOf(const Scene& scene, const Lattice& lattice) {
   return {glm::ivec3(glm::ceil(low)) - 1, glm::ivec3(glm::floor(high))};
 }
 
-VoxelBlock voxelizeBlock(const Scene& scene, const Lattice& lattice, const glm::ivec3& place,
+VoxelBlock voxelizeBlock(const Scene& scene, const VoxelizeOptions& options, const glm::ivec3& place,
                          std::span<const uint32_t> triangles, BlockBits& bits) {
   bits.clear();
   const glm::ivec3 low = place * kBlockSide;
   const VoxelBox block{low, low + (kBlockSide - 1)};
-  const double voxels_a_unit = std::ldexp(1.0, -lattice.exponent);
+  const double voxels_a_unit = std::ldexp(1.0, -options.lattice.exponent);
+  const auto insert = [&](int y, int z, int first, int last) {
+    bits.row(y - low.y, z - low.z) |= rowBits(first - low.x, last - low.x);
+  };
   for (const uint32_t id : triangles) {
-    TriangleRows rows(inVoxels(scene.corners(id), voxels_a_unit));
-    rows.visit(block, [&](int y, int z, int first, int last) {
-      bits.row(y - low.y, z - low.z) |= rowBits(first - low.x, last - low.x);
-    });
+    const auto corners = inVoxels(scene.corners(id), voxels_a_unit);
+    if (options.separation == Separation::kConservative) {
+      TriangleRows(corners).visit(block, insert);
+    } else {
+      SeparatingRows(corners, options.separation).visit(block, insert);
+    }
   }
   VoxelBlock result;
   result.place = place;
   result.bricks = bits.bricks();
+  addAttributes(scene, triangles, options.attributes, options.lattice, result);
   return result;
 }
 
@@ -82,11 +88,12 @@ void voxelize(const Scene& scene, const VoxelizeOptions& options,
           const glm::ivec3 place =
               part.low + glm::ivec3(int(at % size_t(size.x)), int(at / size_t(size.x) % size_t(size.y)),
                                     int(at / (size_t(size.x) * size_t(size.y))));
-          blocks[i] = voxelizeBlock(scene, options.lattice, place, binned.of(at), bits);
+          blocks[i] = voxelizeBlock(scene, options, place, binned.of(at), bits);
           if (options.with_triangles) blocks[i].triangles.assign(binned.of(at).begin(), binned.of(at).end());
         }
       });
       for (size_t i = 0; i < count; ++i) {
+        if (blocks[i].bricks.empty()) continue;
         voxels += blocks[i].count();
         take(std::move(blocks[i]));
       }

@@ -3,13 +3,17 @@
 #include <cstdint>
 #include <functional>
 
+#include "core/voxel/separating_rows.h"
+#include "core/voxel/voxel_attributes.h"
 #include "core/voxel/voxel_grid.h"
 
 namespace sightline {
 
 struct VoxelizeOptions {
   Lattice lattice;
-  bool with_triangles = true;  ///< keep each block's ids
+  Separation separation = Separation::kConservative;
+  bool with_triangles = true;        ///< keep each block's ids
+  WantedAttributes attributes = {};  ///< of each voxel
   /// Bytes that lists of triangles may take at once, beside the scene: with fewer, more passes over the
   /// scene. At least one layer of blocks is worked on at once, whatever it takes.
   uint64_t memory = uint64_t(1) << 30;
@@ -19,7 +23,9 @@ struct VoxelizeOptions {
 };
 
 /// The voxels whose closed cube meets a triangle of the scene, all of them and no other: every point of a
-/// triangle is in one, and each has a point of a triangle. Triangles are closed, without area they count too;
+/// triangle is in one, and each has a point of a triangle. Or those of them that separate (SeparatingRows):
+/// then a block's ids are those of the triangles that meet its closed cube, and blocks without voxels do not
+/// come. Triangles are closed, without area they count too;
 /// holes of masked surfaces do not matter here. Blocks come to `take` on the caller's thread, in order
 /// (placeBefore). The same bytes on any number of threads and with any `memory`. Throws as requireFits, and
 /// Interrupted.

@@ -123,7 +123,10 @@ void VulkanContext::readLimits() {
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_ACCELERATION_STRUCTURE_PROPERTIES_KHR);
   auto maintenance = vkStruct<VkPhysicalDeviceMaintenance3Properties>(
       VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES);
+  auto meshes = vkStruct<VkPhysicalDeviceMeshShaderPropertiesEXT>(
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MESH_SHADER_PROPERTIES_EXT);
   if (has(VulkanFeature::kStructures)) maintenance.pNext = &structures;
+  if (has(VulkanFeature::kMeshShaders)) meshes.pNext = std::exchange(maintenance.pNext, &meshes);
   if (has(VulkanFeature::kPipelines)) pipelines.pNext = std::exchange(maintenance.pNext, &pipelines);
   auto properties = vkStruct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
   properties.pNext = &maintenance;
@@ -137,6 +140,8 @@ void VulkanContext::readLimits() {
   limits_.launch_rays =
       static_cast<uint32_t>(std::min<uint64_t>(pipelines.maxRayDispatchInvocationCount, width));
   limits_.draws = general.maxDrawIndirectCount;
+  limits_.vertex_number = general.maxDrawIndexedIndexValue;
+  limits_.mesh_groups = meshes.maxMeshWorkGroupTotalCount;
   limits_.image_side =
       std::min({general.maxImageDimension2D, general.maxFramebufferWidth, general.maxFramebufferHeight});
   limits_.timestamp_ns = general.timestampPeriod;

@@ -101,6 +101,8 @@ struct VulkanLimits {
   uint32_t launch_rays = 0;      ///< of one trace command
   uint32_t launch_groups = 0;    ///< of one dispatch
   uint32_t draws = 0;            ///< of one list
+  uint32_t vertex_number = 0;    ///< largest that an index may name
+  uint32_t mesh_groups = 0;      ///< of one draw of mesh shaders
   uint32_t image_side = 0;       ///< pixels of an image that can be drawn into
   uint32_t handle_bytes = 0;     ///< shader group handle
   uint32_t table_alignment = 0;  ///< of the parts of a shader binding table

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/trace/select_device.h"
 
@@ -20,10 +22,14 @@ std::set<std::string, std::less<>> readExtensions(const VulkanApi& api, VkPhysic
   return names;
 }
 
-VulkanAbilities abilitiesOf(const VulkanApi& api, VkPhysicalDevice device, uint32_t version) {
+VulkanAbilities abilitiesOf(const VulkanApi& api, VkPhysicalDevice device,
+                            const VkPhysicalDeviceProperties& properties) {
   VulkanAbilities abilities;
-  abilities.version = version;
-  if (version < VK_API_VERSION_1_2) return abilities;
+  abilities.version = properties.apiVersion;
+  if (abilities.version < VK_API_VERSION_1_2) return abilities;
+  const VkPhysicalDeviceLimits& limits = properties.limits;
+  abilities.sub_pixel_bits = limits.subPixelPrecisionBits;
+  abilities.group_size = std::min(limits.maxComputeWorkGroupInvocations, limits.maxComputeWorkGroupSize[0]);
   abilities.extensions = readExtensions(api, device);
   VulkanFeatureChain chain(abilities.extensions);
   api.vkGetPhysicalDeviceFeatures2(device, &chain.first());
@@ -67,7 +73,7 @@ VulkanDeviceChoice describe(const VulkanApi& api, VkPhysicalDevice physical, siz
     }
   }
   try {
-    device.abilities = abilitiesOf(api, physical, version);
+    device.abilities = abilitiesOf(api, physical, properties.properties);
     device.info.unusable = whyUnusable(device.abilities, needs);
   } catch (const Error& error) {
     device.info.unusable = error.what();

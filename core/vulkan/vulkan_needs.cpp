@@ -88,7 +88,17 @@ std::string whyUnusable(const VulkanAbilities& abilities, const VulkanNeeds& nee
   }
   const bool queue = std::any_of(abilities.queues.begin(), abilities.queues.end(),
                                  [&](VkQueueFlags flags) { return (flags & needs.queue) == needs.queue; });
-  return queue ? std::string() : "no queue for " + queueText(needs.queue);
+  if (!queue) return "no queue for " + queueText(needs.queue);
+  if (abilities.sub_pixel_bits < needs.sub_pixel_bits) {
+    return fmt::format("it knows places in a pixel to {} bits (subPixelPrecisionBits), {} are needed",
+                       abilities.sub_pixel_bits, needs.sub_pixel_bits);
+  }
+  if (abilities.group_size < needs.group_size) {
+    return fmt::format(
+        "its groups of compute shaders hold {} invocations (maxComputeWorkGroupSize), {} are needed",
+        abilities.group_size, needs.group_size);
+  }
+  return "";
 }
 
 std::set<VulkanFeature> featuresFor(const VulkanAbilities& abilities, const VulkanNeeds& needs) {

@@ -42,6 +42,8 @@ struct VulkanNeeds {
   std::vector<VulkanFeature> welcome = {};    ///< those of these that the device has
   std::vector<const char*> extensions = {};   ///< besides those of the features
   VkQueueFlags queue = VK_QUEUE_COMPUTE_BIT;  ///< what one queue must do all of
+  uint32_t sub_pixel_bits = 0;                ///< corners must be snapped to 2^-bits pixel or finer
+  uint32_t group_size = 0;  ///< invocations that a group of a compute shader must have, in a row
   /// What to say where there is no device at all.
   const char* none =
       "no Vulkan device found: install a driver with ray tracing, or use the devices cpu or opencl";
@@ -54,6 +56,8 @@ struct VulkanAbilities {
   std::set<VulkanFeature> features;
   std::vector<VkQueueFlags> queues;      ///< by family
   std::vector<uint32_t> timestamp_bits;  ///< of each family; 0: it knows no time
+  uint32_t sub_pixel_bits = 0;           ///< subPixelPrecisionBits
+  uint32_t group_size = 0;               ///< most invocations of a group, in a row
 };
 
 /// Extensions that the feature is one of.

@@ -9,16 +9,56 @@
 namespace sightline {
 namespace {
 
-VkRayTracingShaderGroupCreateInfoKHR groupInfo(VkRayTracingShaderGroupTypeKHR type, uint32_t general,
-                                               uint32_t closest_hit) {
-  auto info = vkStruct<VkRayTracingShaderGroupCreateInfoKHR>(
-      VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR);
-  info.type = type;
-  info.generalShader = general;
-  info.closestHitShader = closest_hit;
-  info.anyHitShader = info.intersectionShader = VK_SHADER_UNUSED_KHR;
-  return info;
-}
+/// Stages and groups of a ray tracing pipeline, while it is made.
+class RayGroups {
+ public:
+  explicit RayGroups(const VulkanContext& context) : context_(context) {}
+
+  /// A group of a ray generation or miss shader.
+  void general(VkShaderStageFlagBits stage, const std::string& name) {
+    group(VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR).generalShader = add(stage, name);
+  }
+
+  /// A group for triangles.
+  void hit(const VulkanRayShaders::HitGroup& shaders) {
+    auto& its = group(VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR);
+    its.closestHitShader = add(VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, shaders.closest_hit);
+    its.anyHitShader = add(VK_SHADER_STAGE_ANY_HIT_BIT_KHR, shaders.any_hit);
+  }
+
+  void describe(VkRayTracingPipelineCreateInfoKHR& info) const {
+    info.stageCount = static_cast<uint32_t>(stages_.size());
+    info.pStages = stages_.data();
+    info.groupCount = static_cast<uint32_t>(groups_.size());
+    info.pGroups = groups_.data();
+  }
+
+ private:
+  /// The number of a stage; no name: no stage.
+  uint32_t add(VkShaderStageFlagBits stage, const std::string& name) {
+    if (name.empty()) return VK_SHADER_UNUSED_KHR;
+    modules_.push_back(shaderModule(context_, name));
+    stages_.push_back(stageInfo(stage, modules_.back().get()));
+    return static_cast<uint32_t>(stages_.size() - 1);
+  }
+
+  VkRayTracingShaderGroupCreateInfoKHR& group(VkRayTracingShaderGroupTypeKHR type) {
+    auto& info = groups_.emplace_back(vkStruct<VkRayTracingShaderGroupCreateInfoKHR>(
+        VK_STRUCTURE_TYPE_RAY_TRACING_SHADER_GROUP_CREATE_INFO_KHR));
+    info.type = type;
+    info.generalShader = info.closestHitShader = VK_SHADER_UNUSED_KHR;
+    info.anyHitShader = info.intersectionShader = VK_SHADER_UNUSED_KHR;
+    return info;
+  }
+
+  const VulkanContext& context_;
+  std::vector<VulkanHandle<VkShaderModule>> modules_;
+  std::vector<VkPipelineShaderStageCreateInfo> stages_;
+  std::vector<VkRayTracingShaderGroupCreateInfoKHR> groups_;
+};
+
+/// The first records of a table are those of ray generation and miss; then come the groups of hits.
+constexpr uint32_t kHitRecord = 2;
 
 uint64_t alignUp(uint64_t value, uint64_t alignment) {
   return (value + alignment - 1) / alignment * alignment;
@@ -97,12 +137,12 @@ VulkanStage VulkanStage::list(const VulkanContext& context, const std::string& n
   return stage;
 }
 
-VulkanStage VulkanStage::rays(const VulkanContext& context, const std::string& generation,
-                              const std::string& miss, const std::string& hit) {
+VulkanStage VulkanStage::rays(const VulkanContext& context, const VulkanRayShaders& shaders) {
   VulkanStage stage;
   stage.context_ = &context;
-  stage.createLayout(VK_SHADER_STAGE_RAYGEN_BIT_KHR);
-  stage.createRayPipeline(generation, miss, hit);
+  const bool asks = std::ranges::any_of(shaders.hits, [](const auto& hit) { return !hit.any_hit.empty(); });
+  stage.createLayout(VK_SHADER_STAGE_RAYGEN_BIT_KHR | (asks ? VK_SHADER_STAGE_ANY_HIT_BIT_KHR : 0));
+  stage.createRayPipeline(shaders);
   return stage;
 }
 
@@ -112,42 +152,34 @@ void VulkanStage::createPipeline(const std::string& name) const {
   pipeline_ = computePipeline(*context_, name, layout_.get(), &constants);
 }
 
-void VulkanStage::createRayPipeline(const std::string& generation_name, const std::string& miss_name,
-                                    const std::string& hit_name) {
-  const VulkanApi& api = context_->api();
-  const VulkanHandle<VkShaderModule> generation = shaderModule(*context_, generation_name);
-  const VulkanHandle<VkShaderModule> miss = shaderModule(*context_, miss_name);
-  const VulkanHandle<VkShaderModule> hit = shaderModule(*context_, hit_name);
-  const VkPipelineShaderStageCreateInfo stages[] = {
-      stageInfo(VK_SHADER_STAGE_RAYGEN_BIT_KHR, generation.get()),
-      stageInfo(VK_SHADER_STAGE_MISS_BIT_KHR, miss.get()),
-      stageInfo(VK_SHADER_STAGE_CLOSEST_HIT_BIT_KHR, hit.get())};
-  const VkRayTracingShaderGroupCreateInfoKHR groups[] = {
-      groupInfo(VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR, 0, VK_SHADER_UNUSED_KHR),
-      groupInfo(VK_RAY_TRACING_SHADER_GROUP_TYPE_GENERAL_KHR, 1, VK_SHADER_UNUSED_KHR),
-      groupInfo(VK_RAY_TRACING_SHADER_GROUP_TYPE_TRIANGLES_HIT_GROUP_KHR, VK_SHADER_UNUSED_KHR, 2)};
+void VulkanStage::createRayPipeline(const VulkanRayShaders& shaders) {
+  RayGroups groups(*context_);
+  groups.general(VK_SHADER_STAGE_RAYGEN_BIT_KHR, shaders.generation);
+  groups.general(VK_SHADER_STAGE_MISS_BIT_KHR, shaders.miss);
+  for (const VulkanRayShaders::HitGroup& hit : shaders.hits) groups.hit(hit);
   auto info =
       vkStruct<VkRayTracingPipelineCreateInfoKHR>(VK_STRUCTURE_TYPE_RAY_TRACING_PIPELINE_CREATE_INFO_KHR);
-  info.stageCount = info.groupCount = 3;
-  info.pStages = stages;
-  info.pGroups = groups;
+  groups.describe(info);
   info.maxPipelineRayRecursionDepth = 1;
   info.layout = layout_.get();
   VkPipeline pipeline = VK_NULL_HANDLE;
-  checkVk(api.vkCreateRayTracingPipelinesKHR(context_->device(), VK_NULL_HANDLE, VK_NULL_HANDLE, 1, &info,
-                                             nullptr, &pipeline),
-          ("vkCreateRayTracingPipelinesKHR " + generation_name).c_str());
+  checkVk(context_->api().vkCreateRayTracingPipelinesKHR(context_->device(), VK_NULL_HANDLE, VK_NULL_HANDLE,
+                                                         1, &info, nullptr, &pipeline),
+          ("vkCreateRayTracingPipelinesKHR " + shaders.generation).c_str());
   pipeline_ = {*context_, pipeline, destroyPipeline};
+  readTable(info.groupCount);
+}
 
-  // The table: one record a group, each at a multiple of the base alignment.
+void VulkanStage::readTable(uint32_t groups) {
+  // One record a group, each at a multiple of the base alignment.
   const VulkanLimits& limits = context_->limits();
   table_stride_ = alignUp(limits.handle_bytes, limits.table_alignment);
-  std::vector<char> handles(3 * limits.handle_bytes);
-  table_records_.resize(3 * table_stride_);
-  checkVk(api.vkGetRayTracingShaderGroupHandlesKHR(context_->device(), pipeline, 0, 3, handles.size(),
-                                                   handles.data()),
+  std::vector<char> handles(groups * limits.handle_bytes);
+  table_records_.resize(groups * table_stride_);
+  checkVk(context_->api().vkGetRayTracingShaderGroupHandlesKHR(context_->device(), pipeline_.get(), 0, groups,
+                                                               handles.size(), handles.data()),
           "vkGetRayTracingShaderGroupHandlesKHR");
-  for (size_t i = 0; i < 3; ++i) {
+  for (size_t i = 0; i < groups; ++i) {
     std::memcpy(&table_records_[i * table_stride_], &handles[i * limits.handle_bytes], limits.handle_bytes);
   }
 }
@@ -179,7 +211,8 @@ void VulkanStage::record(VkCommandBuffer commands, VkDeviceAddress launch, uint3
       const uint64_t stride = table_stride_;
       const VkStridedDeviceAddressRegionKHR generation{table_start_, stride, stride};
       const VkStridedDeviceAddressRegionKHR miss{table_start_ + stride, stride, stride};
-      const VkStridedDeviceAddressRegionKHR hit{table_start_ + 2 * stride, stride, stride};
+      const uint64_t hits = kHitRecord * stride;
+      const VkStridedDeviceAddressRegionKHR hit{table_start_ + hits, stride, table_records_.size() - hits};
       const VkStridedDeviceAddressRegionKHR callable{};
       api.vkCmdTraceRaysKHR(commands, &generation, &miss, &hit, &callable, items, 1, 1);
     } else {

@@ -21,6 +21,16 @@ VulkanHandle<VkPipeline> computePipeline(const VulkanContext& context, const std
                                          VkPipelineLayout layout,
                                          const VkSpecializationInfo* constants = nullptr);
 
+/// The shaders of a ray tracing pipeline.
+struct VulkanRayShaders {
+  /// What becomes of triangles: those that are not opaque go through any_hit first, if there is one.
+  struct HitGroup {
+    std::string closest_hit, any_hit;  ///< empty: none
+  };
+  std::string generation, miss;
+  std::vector<HitGroup> hits;  ///< by the record offset of traceRayEXT
+};
+
 /// A program that runs one work item an invocation: a tracing stage, or a compute shader over a list.
 class VulkanStage {
  public:
@@ -30,10 +40,8 @@ class VulkanStage {
   /// The same of shader "NAME.comp" with groups of SL_LIST_GROUP, compiled when it is first recorded, since
   /// who only traces rays needs none of them.
   static VulkanStage list(const VulkanContext& context, const std::string& name);
-  /// A ray tracing pipeline of one ray generation shader, and one for misses and hits each. Threads may make
-  /// several at once (a driver takes two seconds for one).
-  static VulkanStage rays(const VulkanContext& context, const std::string& generation,
-                          const std::string& miss, const std::string& hit);
+  /// A ray tracing pipeline. Threads may make several at once (a driver takes two seconds for one).
+  static VulkanStage rays(const VulkanContext& context, const VulkanRayShaders& shaders);
 
   /// Compiles what is not yet.
   void compile() const {
@@ -50,7 +58,8 @@ class VulkanStage {
     layout_ = pushLayout(*context_, stages);
   }
   void createPipeline(const std::string& name) const;
-  void createRayPipeline(const std::string& generation, const std::string& miss, const std::string& hit);
+  void createRayPipeline(const VulkanRayShaders& shaders);
+  void readTable(uint32_t groups);
   void uploadTable() const;
 
   const VulkanContext* context_ = nullptr;
@@ -60,7 +69,7 @@ class VulkanStage {
   std::string list_name_;                      ///< a list's shader, to be compiled at the first record()
   mutable VulkanHandle<VkPipeline> pipeline_;  ///< a device's stages are recorded by one thread at a time
   uint64_t table_stride_ = 0;
-  std::vector<char> table_records_;  ///< shader binding table: ray generation, miss, hit
+  std::vector<char> table_records_;  ///< shader binding table: ray generation, miss, hits
   mutable VulkanBuffer table_;       ///< of them, from the first record() on
   mutable VkDeviceAddress table_start_ = 0;
 };

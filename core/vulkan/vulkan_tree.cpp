@@ -8,7 +8,8 @@
 namespace sightline {
 namespace {
 
-/// Triangles without indices. Unless all are opaque, ray queries decide about each.
+/// Triangles without indices. Unless all are opaque, shaders decide about each, some perhaps asked several
+/// times.
 VkAccelerationStructureGeometryKHR triangleGeometry(VkDeviceAddress corners, uint32_t triangles,
                                                     bool opaque) {
   auto geometry =
@@ -29,7 +30,6 @@ VkAccelerationStructureGeometryKHR instanceGeometry(VkDeviceAddress instances) {
   auto geometry =
       vkStruct<VkAccelerationStructureGeometryKHR>(VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_KHR);
   geometry.geometryType = VK_GEOMETRY_TYPE_INSTANCES_KHR;
-  geometry.flags = VK_GEOMETRY_OPAQUE_BIT_KHR;
   VkAccelerationStructureGeometryInstancesDataKHR& data = geometry.geometry.instances;
   data.sType = VK_STRUCTURE_TYPE_ACCELERATION_STRUCTURE_GEOMETRY_INSTANCES_DATA_KHR;
   data.data.deviceAddress = instances;

@@ -34,8 +34,8 @@ struct VulkanTree {
 /// many as `triangles` would not fit one allocation.
 uint32_t largestPart(const VulkanContext& context, uint32_t triangles);
 
-/// corners: nine floats a triangle, in leaf order; must be on the device. placed: at least one, kMostPlacedParts
-/// at most.
+/// corners: nine floats a triangle, in leaf order; must be on the device. placed: at least one,
+/// kMostPlacedParts at most.
 VulkanTree buildVulkanTree(const VulkanContext& context, const VulkanBuffer& corners,
                            const std::vector<LeafPart>& parts, const std::vector<PlacedPart>& placed);
 

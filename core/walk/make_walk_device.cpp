@@ -8,21 +8,29 @@
 
 namespace sightline {
 
-std::unique_ptr<WalkDevice> makeWalkDevice(const std::string& name, const WalkScene& scene, WalkClock clock) {
-  if (name == "cpu") return makeSoftwareWalkDevice(scene, std::move(clock));
-  if (name == "vulkan" || name.starts_with("vulkan:")) {
-#ifdef SL_WITH_VULKAN
-    return makeVulkanWalkDevice(name, scene, std::move(clock));
-#else
+void requireWalkDevice(const std::string& name) {
+  if (name == "cpu") return;
+  if (name != "vulkan" && !name.starts_with("vulkan:")) {
     throw Error(
-        "walk: this program was built without Vulkan (SL_WITH_VULKAN=OFF); --device cpu draws on the "
-        "processor");
-#endif
+        fmt::format("no device \"{}\" draws; there are vulkan, vulkan:INDEX, vulkan:PART-OF-NAME and cpu",
+                    name),
+        kExitUsage);
   }
+#ifdef SL_WITH_VULKAN
+  requireVulkanWalkDevice(name);
+#else
   throw Error(
-      fmt::format("no device \"{}\" draws; there are vulkan, vulkan:INDEX, vulkan:PART-OF-NAME and cpu",
-                  name),
-      kExitUsage);
+      "walk: this program was built without Vulkan (SL_WITH_VULKAN=OFF); --device cpu draws on the "
+      "processor");
+#endif
+}
+
+std::unique_ptr<WalkDevice> makeWalkDevice(const std::string& name, const WalkScene& scene, WalkClock clock) {
+  requireWalkDevice(name);
+#ifdef SL_WITH_VULKAN
+  if (name != "cpu") return makeVulkanWalkDevice(name, scene, std::move(clock));
+#endif
+  return makeSoftwareWalkDevice(scene, std::move(clock));
 }
 
 }  // namespace sightline

@@ -42,6 +42,7 @@ struct Running {
   std::unique_ptr<WalkPlayer> player;
   std::vector<std::vector<FrameTimes>> replays;  ///< whole ones
   std::vector<FrameTimes> broken;                ///< the one that was ended
+  std::vector<FrameTimes> warm_up;               ///< the first, as far as it came
 };
 
 class Replayer {
@@ -60,7 +61,7 @@ class Replayer {
     const double start = clock_();
     for (const std::string& name : methods) {
       result_.methods.push_back({.name = name});
-      running_.push_back({device_.play(name, options_.method), {}, {}});
+      running_.push_back({device_.play(name, options_.method), {}, {}, {}});
     }
     all_ = uint64_t(methods.size()) * frames_.cameras.size() * (options_.repeats + 2);
     try {
@@ -98,7 +99,7 @@ class Replayer {
     running.player->forget();
     running.broken.clear();
     const bool counts_here = !walkMethod(found.name).on_gpu;  // else they cost a wait
-    std::vector<FrameTimes>& times = running.broken;
+    std::vector<FrameTimes>& times = repeat == 0 ? running.warm_up : running.broken;
     std::vector<FrameCounts> counts;
     const auto keepCounts = [&] {
       if (counts_here && counts.size() >= found.counts.size()) found.counts = counts;
@@ -117,10 +118,11 @@ class Replayer {
           running.player->gpuTimes(done, times[done]);
         }
       }
-      const auto all = uint32_t(times.size());
-      for (uint32_t frame = all - std::min(all, options_.in_flight - 1); frame < all; ++frame) {
-        running.player->gpuTimes(frame, times[frame]);
-      }
+      lastGpuTimes(*running.player, times);
+    } catch (const Interrupted&) {
+      lastGpuTimes(*running.player, times);
+      keepCounts();
+      throw;
     } catch (...) {
       keepCounts();
       throw;
@@ -130,12 +132,21 @@ class Replayer {
     running.broken.clear();
   }
 
+  /// Of the frames that are still under way.
+  void lastGpuTimes(WalkPlayer& player, std::vector<FrameTimes>& times) const {
+    const auto all = uint32_t(times.size());
+    for (uint32_t frame = all - std::min(all, options_.in_flight - 1); frame < all; ++frame) {
+      player.gpuTimes(frame, times[frame]);
+    }
+  }
+
   void keepTimes(size_t method) {
     const Running& running = running_[method];
     MethodReplay& found = result_.methods[method];
     found.repeats = uint32_t(running.replays.size());
     if (running.replays.empty()) {
-      found.times = running.broken;
+      found.warm_up = running.broken.empty() && !running.warm_up.empty();
+      found.times = found.warm_up ? running.warm_up : running.broken;
       return;
     }
     for (size_t frame = 0; frame < frames_.cameras.size(); ++frame) {

@@ -54,7 +54,8 @@ struct FalseFrame {
 struct MethodReplay {
   std::string name;
   uint32_t repeats = 0;  ///< whole ones, of which times are medians; 0: of a part of one
-  std::vector<FrameTimes> times = {};
+  bool warm_up = false;  ///< times are of the replay that is dropped, as it was stopped before any other
+  std::vector<FrameTimes> times = {};  ///< empty: it was not run
   std::vector<FrameCounts> counts = {};
   std::vector<CheckedFrame> checks = {};          ///< empty: not checked
   std::vector<Pop> pops = {};                     ///< the longest first, at most kMostPops

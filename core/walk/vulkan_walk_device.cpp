@@ -32,7 +32,8 @@ class VulkanPlayer : public WalkPlayer {
     numbers_.push_back({number, drawing_.frame()});
     if (numbers_.size() >= in_flight) drawing_.ring().gpuTimes(numbers_[numbers_.size() - in_flight].frame);
     if (numbers_.size() > kRemembered) numbers_.erase(numbers_.begin());
-    times.cpu = {drawn - start - cpu.record - cpu.submit - cpu.wait, cpu.record, cpu.submit, cpu.wait,
+    const double wait = cpu.look + cpu.wait;
+    times.cpu = {drawn - start - cpu.record - cpu.submit - wait, cpu.record, cpu.submit, wait,
                  clock_() - drawn};
   }
 
@@ -177,11 +178,7 @@ class VulkanWalkDevice : public WalkDevice {
   DeviceInfo info() const override { return drawing_.context().info(); }
   bool timesGpu() const override { return true; }
   std::string whyNot(const std::string& method) const override {
-    if (!walkMethod(method).on_gpu) return "";
-    if (gpuMethod(method) == GpuMethod::hizMeshlets && drawing_.mesh().hasSides()) {
-      return "meshlets do not know triangles that only their front shows, which the scene has; take hiz";
-    }
-    return whyNotMethod(drawing_.context().abilities(), gpuMethod(method));
+    return walkMethod(method).on_gpu ? whyNotCull(drawing_, gpuMethod(method)) : "";
   }
   std::unique_ptr<WalkPlayer> play(const std::string& method, const WalkMethodOptions& options) override {
     const WalkMethodInfo& info = walkMethod(method);
@@ -202,6 +199,10 @@ class VulkanWalkDevice : public WalkDevice {
 };
 
 }  // namespace
+
+void requireVulkanWalkDevice(const std::string& selector) {
+  selectVulkanDevice(selector, drawingNeeds());
+}
 
 std::unique_ptr<WalkDevice> makeVulkanWalkDevice(const std::string& selector, const WalkScene& scene,
                                                  WalkClock clock) {

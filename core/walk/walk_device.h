@@ -66,6 +66,9 @@ class WalkDevice {
   virtual std::unique_ptr<WalkPlayer> play(const std::string& method, const WalkMethodOptions& options) = 0;
 };
 
+/// Throws Error, as makeWalkDevice does, for a name of no device that draws: before there is a scene.
+void requireWalkDevice(const std::string& name);
+
 /// "cpu": draws on the processor, slowly, the same everywhere. "vulkan", "vulkan:INDEX",
 /// "vulkan:PART-OF-NAME": a device that draws. Throws Error that names what there is, or what the device
 /// lacks.

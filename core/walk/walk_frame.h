@@ -24,7 +24,8 @@ inline constexpr size_t kGpuPartCount = 5;
 inline constexpr std::array<const char*, kGpuPartCount> kGpuPartNames = {"draw", "query", "pyramid", "cull",
                                                                          "rest"};
 
-/// Times of a frame in milliseconds. A device without a GPU has no GPU times: all 0.
+/// Times of a frame in milliseconds. GPU times that are not known are 0: of a device without a GPU, or that
+/// was lost.
 struct FrameTimes {
   double frame = 0;  ///< from its beginning to that of the next
   std::array<double, kCpuPartCount> cpu{};

@@ -36,13 +36,6 @@ uint32_t colorOf(const WalkReport& report, const MethodReplay& method) {
   return uint32_t(&method - report.replay.methods.data());
 }
 
-/// The name, which no line break cuts.
-std::string unbroken(const std::string& name) {
-  std::string text;
-  for (const char c : name) text += c == '-' ? "\u2011" : std::string(1, c);
-  return text;
-}
-
 size_t framesAPoint(size_t frames) {
   return std::max<size_t>(1, (frames + kPointsALine - 1) / kPointsALine);
 }
@@ -92,18 +85,25 @@ std::string times(double slow, double fast) {
 }
 
 ReportTable methodsTable(const WalkReport& report) {
-  ReportTable table{.columns = {"method", "ms a frame", "frames/s", "1 % low", "0.1 % low", "against vfc",
-                                "GPU ms", "objects", "triangles", "queries", "submits", "false pixels",
-                                "longest missing"}};
+  ReportTable table{
+      .columns = {"method", "ms a frame", "frames/s", "1 % low", "0.1 % low", "against vfc", "GPU ms",
+                  "objects", "triangles", "queries", "submits", "false pixels", "longest missing"},
+      .short_names = true};
   const MethodReplay* vfc = methodOf(report, "vfc");
   const double vfc_ms = vfc == nullptr ? 0 : summarize(*vfc, 0, vfc->times.size()).mean;
   for (const MethodReplay& m : report.replay.methods) {
-    if (m.times.empty()) continue;
+    if (m.times.empty()) {
+      std::vector<std::string> row(table.columns.size(), "-");
+      row[0] = m.name;
+      row[1] = "not run";
+      table.rows.push_back(row);
+      continue;
+    }
     const WalkSummary s = summarize(m, 0, std::max(m.times.size(), m.checks.size()));
     const bool checked = !m.checks.empty();
-    table.rows.push_back({unbroken(m.name), digits(s.mean), digits(1000 / s.mean), digits(1000 / s.slowest_1),
+    table.rows.push_back({m.name, digits(s.mean), digits(1000 / s.mean), digits(1000 / s.slowest_1),
                           digits(1000 / s.slowest_01), times(vfc_ms, s.mean),
-                          report.gpu_times ? digits(s.gpu) : "-", digits(s.objects),
+                          s.gpu_timed > 0 ? digits(s.gpu) : "-", digits(s.objects),
                           shortCount(uint64_t(s.triangles + 0.5)), digits(s.queries), digits(s.submits),
                           checked ? std::to_string(s.false_pixels) : "-",
                           !checked         ? "-"
@@ -128,13 +128,14 @@ ReportTable methodsTable(const WalkReport& report) {
 
 /// Mean milliseconds in each stretch between cuts.
 ReportTable stretchTable(const WalkReport& report, const std::vector<WalkStretch>& stretches) {
-  ReportTable table{.caption = "Milliseconds a frame between cuts", .columns = {"method"}};
+  ReportTable table{
+      .caption = "Milliseconds a frame between cuts", .columns = {"method"}, .short_names = true};
   for (const WalkStretch& s : stretches) {
     table.columns.push_back(fmt::format("frames {} to {}", s.begin, s.end - 1));
   }
   for (const MethodReplay& m : report.replay.methods) {
     if (m.times.empty()) continue;
-    std::vector<std::string> row = {unbroken(m.name)};
+    std::vector<std::string> row = {m.name};
     for (const WalkStretch& s : stretches) {
       row.push_back(s.begin < m.times.size() ? digits(summarize(m, s.begin, s.end).mean) : "-");
     }
@@ -288,8 +289,9 @@ void addDrawn(HtmlReport& page, const WalkReport& report) {
 /// Tables 7.5 and 8.1: what a set is worth.
 void addSetTable(HtmlReport& page, const WalkReport& report) {
   ReportTable table{.columns = {"with", "without", "ms without", "ms with", "factor", "triangles drawn",
-                                "share", "factor x share", "frames outside"}};
-  table.text_columns = 2;
+                                "share", "factor x share", "frames outside"},
+                    .text_columns = 2,
+                    .short_names = true};
   for (const auto& [with, without] : {std::pair("pvs", "none"), {"pvs+vfc", "vfc"}, {"pvs+hiz", "hiz"}}) {
     const MethodReplay *a = methodOf(report, with), *b = methodOf(report, without);
     if (a == nullptr || b == nullptr) continue;
@@ -311,9 +313,10 @@ void addSetTable(HtmlReport& page, const WalkReport& report) {
 }
 
 void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pictures) {
-  ReportTable table{.columns = {"method", "false pixels", "of all pixels", "frames with any",
-                                "most in a frame", "objects went missing", "longest", "of object",
-                                "from frame"}};
+  ReportTable table{
+      .columns = {"method", "false pixels", "of all pixels", "frames with any", "most in a frame",
+                  "objects went missing", "longest", "of object", "from frame"},
+      .short_names = true};
   const double pixels = double(report.width) * report.height;
   bool any = false;
   for (const MethodReplay& m : report.replay.methods) {
@@ -379,6 +382,7 @@ HtmlReport walkPage(const WalkReport& report, const WalkPictures& pictures, cons
       "command to "
       "its last.");
   for (const std::string& line : leftOutLines(report)) page.text(line + ".");
+  for (const std::string& line : walkNotes(report)) page.text("Note: " + line + ".");
   const std::vector<WalkStretch> stretches = stretchesOf(report.frames);
   if (stretches.size() > 1 && stretches.size() <= 8) page.table(stretchTable(report, stretches));
   addTimes(page, report);

@@ -11,6 +11,9 @@
 namespace sightline {
 namespace {
 
+/// Share of unexplained pixels from which on they are worth a word: surfaces in one place give fewer.
+constexpr double kManyUnexplained = 1e-3;
+
 /// Mean of the `share` greatest of values, ascending; at least of one.
 double meanOfGreatest(const std::vector<double>& values, double share) {
   const size_t count = std::max<size_t>(1, size_t(double(values.size()) * share));
@@ -19,23 +22,34 @@ double meanOfGreatest(const std::vector<double>& values, double share) {
   return sum / double(count);
 }
 
+/// The value, or null where nothing was measured.
+Json known(bool any, double value) {
+  return any ? Json(value) : Json();
+}
+
 Json countsJson(const WalkSummary& s) {
-  return {{"objects", s.objects}, {"triangles", s.triangles}, {"queries", s.queries},
-          {"submits", s.submits}, {"waits", s.waits},         {"frames_outside", s.outside}};
+  const bool any = s.counted > 0;
+  return {{"objects", known(any, s.objects)}, {"triangles", known(any, s.triangles)},
+          {"queries", known(any, s.queries)}, {"submits", known(any, s.submits)},
+          {"waits", known(any, s.waits)},     {"frames_outside", any ? Json(s.outside) : Json()}};
 }
 
 Json timesJson(const WalkSummary& s) {
-  return {{"mean_ms", s.mean},
-          {"median_ms", s.median},
-          {"slowest_1_percent_ms", s.slowest_1},
-          {"slowest_01_percent_ms", s.slowest_01},
-          {"gpu_ms", s.gpu},
-          {"cpu_ms", s.cpu}};
+  const bool any = s.timed > 0;
+  return {{"mean_ms", known(any, s.mean)},
+          {"median_ms", known(any, s.median)},
+          {"slowest_1_percent_ms", known(any, s.slowest_1)},
+          {"slowest_01_percent_ms", known(any, s.slowest_01)},
+          {"gpu_ms", known(s.gpu_timed > 0, s.gpu)},
+          {"cpu_ms", known(any, s.cpu)}};
 }
 
 Json methodJson(const WalkReport& report, const MethodReplay& method) {
   const WalkSummary all = summarize(method, 0, method.times.size());
-  Json json = {{"name", method.name}, {"repeats", method.repeats}, {"frames", method.times.size()}};
+  Json json = {{"name", method.name},
+               {"repeats", method.repeats},
+               {"warm_up", method.warm_up},
+               {"frames", method.times.size()}};
   json.update(timesJson(all));
   json.update(countsJson(all));
   if (!method.checks.empty()) {
@@ -114,9 +128,11 @@ WalkSummary summarize(const MethodReplay& method, size_t begin, size_t end) {
     const FrameTimes& t = method.times[i];
     frames.push_back(t.frame);
     s.gpu += t.gpu_frame;
+    s.gpu_timed += t.gpu_frame > 0 ? 1 : 0;
     for (const CpuPart part : {CpuPart::traverse, CpuPart::record, CpuPart::submit})
       s.cpu += t.cpu[size_t(part)];
   }
+  s.timed = frames.size();
   if (!frames.empty()) {
     std::ranges::sort(frames);
     const size_t middle = frames.size() / 2;
@@ -124,11 +140,10 @@ WalkSummary summarize(const MethodReplay& method, size_t begin, size_t end) {
     s.mean = meanOfGreatest(frames, 1);
     s.slowest_1 = meanOfGreatest(frames, 0.01);
     s.slowest_01 = meanOfGreatest(frames, 0.001);
-    s.gpu /= double(frames.size());
+    s.gpu /= double(std::max<uint64_t>(s.gpu_timed, 1));
     s.cpu /= double(frames.size());
   }
-  uint64_t counted = 0;
-  for (size_t i = begin; i < std::min(end, method.counts.size()); ++i, ++counted) {
+  for (size_t i = begin; i < std::min(end, method.counts.size()); ++i, ++s.counted) {
     const FrameCounts& c = method.counts[i];
     s.objects += double(c.objects);
     s.triangles += double(c.triangles);
@@ -138,7 +153,7 @@ WalkSummary summarize(const MethodReplay& method, size_t begin, size_t end) {
     s.outside += c.outside ? 1 : 0;
   }
   for (double* mean : {&s.objects, &s.triangles, &s.queries, &s.submits, &s.waits}) {
-    *mean /= double(std::max<uint64_t>(counted, 1));
+    *mean /= double(std::max<uint64_t>(s.counted, 1));
   }
   for (size_t i = begin; i < std::min(end, method.checks.size()); ++i) {
     const CheckedFrame& c = method.checks[i];
@@ -180,16 +195,42 @@ std::vector<std::string> leftOutLines(const WalkReport& report) {
   return lines;
 }
 
+std::vector<std::string> walkNotes(const WalkReport& report) {
+  std::vector<std::string> notes, warm;
+  for (const MethodReplay& m : report.replay.methods) {
+    if (m.warm_up) warm.push_back(m.name);
+  }
+  if (!warm.empty()) {
+    notes.push_back(fmt::format("times of {} are of the warm-up: the walk was stopped before a repeat",
+                                fmt::join(warm, ", ")));
+  }
+  uint64_t unexplained = 0;
+  for (const TracedFrame& t : report.replay.traced) unexplained += t.unexplained_pixels;
+  const double pixels = double(report.width) * report.height * double(report.replay.traced.size());
+  if (double(unexplained) > kManyUnexplained * pixels) {
+    notes.push_back(
+        fmt::format("{} of the {} pixels of traced frames show what no ray within 1/128 pixel meets: this "
+                    "device draws very "
+                    "narrow triangles where they are not, and false pixels may be of that kind "
+                    "(docs/walk.md, Where it ends)",
+                    unexplained, uint64_t(pixels)));
+  }
+  return notes;
+}
+
 std::string walkTable(const WalkReport& report) {
   std::string table = fmt::format("{:<14} {:>9} {:>9} {:>9} {:>8} {:>9} {:>10} {:>8} {:>8} {:>8} {:>12}\n",
                                   "method", "ms", "slow 1 %", "0.1 %", "gpu ms", "objects", "triangles",
                                   "queries", "submits", "waits", "false pixels");
   for (const MethodReplay& m : report.replay.methods) {
-    if (m.times.empty()) continue;
+    if (m.times.empty()) {
+      table += fmt::format("{:<14} {:>9}\n", m.name, "not run");
+      continue;
+    }
     const WalkSummary s = summarize(m, 0, report.frames.cameras.size());
     table += fmt::format(
         "{:<14} {:>9.3f} {:>9.3f} {:>9.3f} {:>8} {:>9.1f} {:>10} {:>8.1f} {:>8.1f} {:>8.1f} {:>12}\n", m.name,
-        s.mean, s.slowest_1, s.slowest_01, report.gpu_times ? fmt::format("{:.3f}", s.gpu) : "-", s.objects,
+        s.mean, s.slowest_1, s.slowest_01, s.gpu_timed > 0 ? fmt::format("{:.3f}", s.gpu) : "-", s.objects,
         shortCount(uint64_t(s.triangles + 0.5)), s.queries, s.submits, s.waits, falseText(m, s));
   }
   if (!report.replay.traced.empty()) {
@@ -261,9 +302,9 @@ std::string walkCsv(const WalkReport& report) {
       const bool timed = i < m.times.size(), counted = i < m.counts.size(), checked = i < m.checks.size();
       const FrameTimes t = timed ? m.times[i] : FrameTimes{};
       number(timed, t.frame);
-      number(timed && report.gpu_times, t.gpu_frame);
+      number(t.gpu_frame > 0, t.gpu_frame);
       for (const double part : t.cpu) number(timed, part);
-      for (const double part : t.gpu) number(timed && report.gpu_times, part);
+      for (const double part : t.gpu) number(t.gpu_frame > 0, part);
       const FrameCounts c = counted ? m.counts[i] : FrameCounts{};
       for (const uint64_t value :
            {c.submits, c.draws, c.objects, c.triangles, c.queries, c.multi_queries, c.failed_queries,

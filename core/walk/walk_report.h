@@ -32,9 +32,10 @@ struct WalkReport {
   WalkReplay replay;
 };
 
-/// A method over a range of frames.
+/// A method over a range of frames. What no frame was measured of stays 0.
 struct WalkSummary {
-  double mean = 0, median = 0;           ///< milliseconds a frame
+  uint64_t timed = 0, gpu_timed = 0, counted = 0;  ///< frames that times, GPU times and counts are of
+  double mean = 0, median = 0;                     ///< milliseconds a frame
   double slowest_1 = 0, slowest_01 = 0;  ///< mean of the slowest hundredth and thousandth, one frame at least
   double gpu = 0;                        ///< mean milliseconds of FrameTimes::gpu_frame
   double cpu = 0;                        ///< of the processor's parts but the waits
@@ -53,6 +54,10 @@ std::vector<WalkStretch> stretchesOf(const WalkFrames& frames);
 
 /// "pvs, pvs+vfc are left out: why", a line a reason.
 std::vector<std::string> leftOutLines(const WalkReport& report);
+
+/// What a reader of the numbers must know, a line each: times that are only of a warm-up; a device that draws
+/// what no ray meets.
+std::vector<std::string> walkNotes(const WalkReport& report);
 
 /// For people: a line a method.
 std::string walkTable(const WalkReport& report);

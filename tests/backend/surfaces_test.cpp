@@ -14,6 +14,7 @@
 #include "core/scene/masked_triangle.h"
 #include "core/trace/cpu_tracer.h"
 #include "tests/support/make_cell.h"
+#include "tests/support/vulkan.h"
 
 namespace sightline {
 namespace {
@@ -168,13 +169,14 @@ Sight see(const SurfaceScene& s, const Ray& ray) {
 }
 
 std::vector<std::string> tracers() {
-  return {"cpu", "opencl", "opencl single", "vulkan", "vulkan parts"};
+  return {"cpu", "opencl", "opencl single", "vulkan", "vulkan parts", "vulkan queries"};
 }
 
 std::unique_ptr<Device> makeTracingDevice(const std::string& name, const Scene& scene, const Bvh& bvh) {
   DeviceOptions options;
   if (name == "opencl single") options.rays_per_item = 1;
   if (name == "vulkan parts") options.part_triangles = 40;
+  if (name == "vulkan queries") options.ray_queries = true;
   return makeDevice(name.substr(0, name.find(' ')), scene, bvh, options);
 }
 
@@ -271,6 +273,76 @@ TEST_P(SurfacesOn, MakeTheSameSets) {
   }
   EXPECT_GT(expected.triangles.size(), 200u);
 }
+
+/// What is not opaque in a scene.
+enum class Kind { kHoles, kGlass, kSides, kDoors };
+
+/// Panels that stand in each other's way, those that are not opaque all of the kind.
+SurfaceScene panels(Kind kind) {
+  SurfaceScene s = randomScene(19, 450);
+  uint32_t of_kind = 0;
+  for (uint32_t id = 0; id < s.scene.triangleCount(); ++id) {
+    uint32_t& word = s.scene.surfaces.words[id];
+    if (kind == Kind::kHoles && (word & kSurfaceMasked) != 0) word &= kSurfaceMasked | kSurfaceIndex;
+    if (kind == Kind::kHoles && (word & kSurfaceMasked) == 0) word = 0;
+    if (kind == Kind::kGlass) word &= kSurfaceGlass;
+    if (kind == Kind::kSides) word = kSurfaceFrontOnly;
+    if (kind == Kind::kDoors) word = id % 50 < 20 ? kSurfaceGlass : 0u;  // whole objects
+    of_kind += word != 0 ? 1 : 0;
+  }
+  EXPECT_GT(of_kind, 100u);
+  return s;
+}
+
+class SurfaceKinds : public testing::TestWithParam<Kind> {};
+
+/// Each kind by both of the driver's ways and by ours: sets, witnesses'
+/// triangles, rays that miss, and images.
+TEST_P(SurfaceKinds, AreTheSameByPipelinesQueriesAndOurTree) {
+  SL_SKIP_WITHOUT_VULKAN();
+  const SurfaceScene s = panels(GetParam());
+  const Bvh bvh = buildBvh(s.scene.positions, s.scene.triangles);
+  const ViewCell cell = testing_support::makeCell({0.1, 0.2, -0.1}, {0.3, 0.2, 0.4});
+  const std::vector<ViewFrame> frames = {
+      {vec4(0.1f, 0, 0, 0), vec4(0, 0, -1, 0), vec4(1, 0, 0, 0), vec4(0, 1, 0, 0)},
+      {vec4(0.1f, 0.2f, 0, 0), vec4(1, 0, 0, 0), vec4(0, 0, 1, 0), vec4(0, 1, 0, 0)}};
+  struct Result {
+    CellPvs pvs;
+    Answers answers;
+    std::vector<uint32_t> images;
+  };
+  const std::vector<Ray> rays = randomRays(21, 20'000);
+  const auto resultOf = [&](const std::string& name) {
+    const auto device = makeTracingDevice(name, s.scene, bvh);
+    Result result{bakeCell(*device, s.scene, cell, 0, surfaceParams()), answersOf(*device, rays), {}};
+    result.images.resize(2 * 96 * 96);
+    device->traceViews(frames, 96, result.images);
+    return result;
+  };
+  const Result pipelines = resultOf("vulkan"), queries = resultOf("vulkan queries"), ours = resultOf("cpu");
+  EXPECT_GT(ours.pvs.triangles.size(), 200u);
+  EXPECT_EQ(pipelines.pvs.triangles, ours.pvs.triangles);
+  EXPECT_EQ(pipelines.pvs.triangles, queries.pvs.triangles);
+  EXPECT_EQ(pipelines.pvs.stats.missing_rays, queries.pvs.stats.missing_rays);
+  EXPECT_EQ(pipelines.images, queries.images);
+  size_t pixels = 0, hits = 0;
+  for (size_t i = 0; i < ours.images.size(); ++i) pixels += ours.images[i] != pipelines.images[i] ? 1 : 0;
+  EXPECT_LE(pixels, 4u);  // at edges
+  for (size_t i = 0; i < rays.size(); ++i) {
+    EXPECT_EQ(pipelines.answers.hits[i].triangle, queries.answers.hits[i].triangle) << "ray " << i;
+    hits += pipelines.answers.hits[i].triangle != ours.answers.hits[i].triangle ? 1 : 0;
+  }
+  EXPECT_LE(hits, 4u);
+  EXPECT_EQ(pipelines.answers.glass, queries.answers.glass);
+  const bool glass = featuresOf(s.scene.surfaces).glass;
+  EXPECT_EQ(pipelines.answers.glass.size() > 4'000u, glass);
+}
+
+constexpr const char* kKindNames[] = {"Holes", "Glass", "Sides", "Doors"};
+
+INSTANTIATE_TEST_SUITE_P(Of, SurfaceKinds,
+                         testing::Values(Kind::kHoles, Kind::kGlass, Kind::kSides, Kind::kDoors),
+                         [](const auto& its) { return kKindNames[size_t(its.param)]; });
 
 INSTANTIATE_TEST_SUITE_P(On, SurfacesOn, testing::ValuesIn(tracers()), [](const auto& name) {
   std::string text = name.param;

@@ -103,6 +103,17 @@ TEST(VulkanErrors, DrawingTakesNoRayTracing) {
   abilities.queues = {VK_QUEUE_COMPUTE_BIT, VK_QUEUE_TRANSFER_BIT};
   expectLine(whyUnusable(abilities, drawing), {"no queue for graphics"});
   abilities = everything();
+  drawing.sub_pixel_bits = 8;
+  drawing.group_size = 256;
+  abilities.sub_pixel_bits = 8;
+  abilities.group_size = 256;
+  EXPECT_EQ(whyUnusable(abilities, drawing), "");
+  abilities.sub_pixel_bits = 4;
+  expectLine(whyUnusable(abilities, drawing), {"4 bits (subPixelPrecisionBits), 8 are needed"});
+  abilities.sub_pixel_bits = 8;
+  abilities.group_size = 128;
+  expectLine(whyUnusable(abilities, drawing), {"128 invocations (maxComputeWorkGroupSize), 256 are needed"});
+  abilities.group_size = 256;
   drawing.extensions = {"VK_KHR_swapchain"};
   expectLine(whyUnusable(abilities, drawing), {"its driver lacks VK_KHR_swapchain"});
 }
@@ -115,7 +126,8 @@ TEST(VulkanErrors, NeedsThatNothingMeetsAreNamed) {
   expectLine(lineOf([&] { const VulkanContext context("vulkan:0", needs); }),
              {"vulkan:0", "its driver lacks VK_SL_no_such_extension"});
   const VulkanContext without_program("vulkan", VulkanNeeds{});
-  expectLine(lineOf([&] { VulkanStage::compute(without_program, "rehash.comp", 64); }), {"rehash.comp", "no program"});
+  expectLine(lineOf([&] { VulkanStage::compute(without_program, "rehash.comp", 64); }),
+             {"rehash.comp", "no program"});
 }
 
 /// With all that drawing takes and nothing of ray tracing turned on: copies and images work.

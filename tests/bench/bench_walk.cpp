@@ -4,12 +4,15 @@
 //   [--split 2048]
 //
 // Mean milliseconds a frame over the walk, one frame in flight, after a walk that warms up; then every
-// `--check`th frame against the drawing of everything. Times of methods of the processor are `sightline
-// walk`'s business.
+// `--check`th frame against the drawing of everything. Of the drawing thread on the processor: recording and
+// submitting; finding out whether answers have arrived; what the method itself takes; and all until the frame
+// has been drawn. By the fixed schedule a method does the same on all devices, so that its own time can be
+// compared between builds.
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -27,12 +30,20 @@ namespace {
 struct Settings {
   std::string scene = "city", device = "vulkan";
   uint64_t triangles = 2'000'000;
+  std::vector<std::string> methods;  ///< by name; empty: all
   uint32_t width = 1280, height = 720, frames = 300, split = kDefaultSplit, check = 10;
 };
 
 double milliseconds() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
       .count();
+}
+
+/// Of this thread, which a driver that draws on the processor does not slow down.
+double processorMilliseconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return double(time.tv_sec) * 1e3 + double(time.tv_nsec) * 1e-6;
 }
 
 /// A way of drawing: a frame, what it did, and the method on the GPU, if it is one.
@@ -47,6 +58,7 @@ struct Contestant {
 struct Sums {
   GpuTimes gpu;
   CpuTimes cpu;
+  double own = 0;  ///< of the method on the processor
   double all = 0;  ///< of the processor, until the frame has been drawn
   uint64_t triangles = 0, draws = 0, false_pixels = 0, shown = 0, checked = 0;
 };
@@ -56,9 +68,10 @@ Sums replay(VulkanDrawing& drawing, DepthCheck& check, const Contestant& contest
   Sums sums;
   contestant.forget();
   for (size_t f = 0; f < path.size(); ++f) {
-    const double start = milliseconds();
+    const double start = milliseconds(), start_own = processorMilliseconds();
     contestant.draw(path[f], f);
     const CpuTimes cpu = drawing.ring().cpuTimes();
+    sums.own += processorMilliseconds() - start_own - cpu.record - cpu.submit - cpu.look - cpu.wait;
     const GpuTimes gpu = drawing.ring().gpuTimes(drawing.frame());
     sums.all += milliseconds() - start;
     for (size_t i = 0; i < kGpuParts; ++i) sums.gpu.part[i] += gpu.part[i];
@@ -66,6 +79,7 @@ Sums replay(VulkanDrawing& drawing, DepthCheck& check, const Contestant& contest
     sums.gpu.frame += gpu.frame;
     sums.cpu.record += cpu.record;
     sums.cpu.submit += cpu.submit;
+    sums.cpu.look += cpu.look;
     sums.cpu.wait += cpu.wait;
     const FrameCounts counts = contestant.counts();
     sums.triangles += counts.triangles;
@@ -82,17 +96,19 @@ Sums replay(VulkanDrawing& drawing, DepthCheck& check, const Contestant& contest
 void print(const Contestant& contestant, const Sums& timed, const Sums& checked, size_t frames) {
   const double n = double(frames);
   fmt::print(
-      "{:<22} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:10.0f} {:12.0f} {:8}\n",
+      "{:<22} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:8.3f} {:10.0f} "
+      "{:12.0f} "
+      "{:8}\n",
       contestant.name, timed.gpu.frame / n, timed.gpu.part[0] / n, timed.gpu.part[1] / n,
       timed.gpu.part[2] / n, timed.gpu.part[3] / n, timed.gpu.rest / n,
-      (timed.cpu.record + timed.cpu.submit) / n, timed.all / n, double(timed.draws) / n,
-      double(timed.triangles) / n, checked.false_pixels);
+      (timed.cpu.record + timed.cpu.submit) / n, timed.cpu.look / n, timed.own / n, timed.all / n,
+      double(timed.draws) / n, double(timed.triangles) / n, checked.false_pixels);
 }
 
 void bench(const Settings& settings) {
   const Scene scene = generateScene(settings.scene, settings.triangles, 1);
   const DrawScene parts = makeDrawScene(scene, {.split = settings.split});
-  VulkanDrawing drawing(settings.device, scene, parts.drawables, {}, {.clock = milliseconds});
+  VulkanDrawing drawing(settings.device, scene, parts.drawables, {}, {.clock = processorMilliseconds});
   const DeviceInfo& info = drawing.context().info();
   fmt::print("{} ({}; {})\n", info.id, info.name, info.driver);
   const CameraPath walk = generateWalk(settings.scene, settings.triangles, 1, settings.frames);
@@ -123,7 +139,10 @@ void bench(const Settings& settings) {
   };
   addMethod("none", cullNothing(parts));
   addMethod("vfc", cullFrustum(parts));
+  addMethod("chc", cullChc(parts));
+  addMethod("chc++", cullChcPlus(parts, plainChc()));
   addMethod("opti-chc++", cullChcPlus(parts, {}));
+  addMethod("opti-chc++, fixed", cullChcPlus(parts, {}, {.fixed = true}));
   std::vector<std::unique_ptr<GpuCulling>> cullings;
   const auto addCulling = [&](const char* name, GpuMethod method, bool mesh_shaders) {
     GpuCulling* its = cullings
@@ -139,11 +158,14 @@ void bench(const Settings& settings) {
   addCulling("hiz-meshlets, mesh", GpuMethod::hizMeshlets, true);
   addCulling("hiz-meshlets, lists", GpuMethod::hizMeshlets, false);
 
-  fmt::print("{:<22} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>12} {:>8}\n", "ms a frame",
-             "GPU", "draw", "query", "pyramid", "cull", "rest", "record", "all", "draws", "triangles",
-             "false");
+  fmt::print("{:<22} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>10} {:>12} {:>8}\n",
+             "ms a frame", "GPU", "draw", "query", "pyramid", "cull", "rest", "record", "look", "own", "all",
+             "draws", "triangles", "false");
   DepthCheck check(drawing);
   for (const Contestant& contestant : contestants) {
+    if (!settings.methods.empty() &&
+        std::ranges::find(settings.methods, contestant.name) == settings.methods.end())
+      continue;
     const Sums checked = replay(drawing, check, contestant, path, settings.check);  // warms up, too
     print(contestant, replay(drawing, check, contestant, path, 0), checked, path.size());
   }
@@ -163,6 +185,7 @@ int main(int argc, char** argv) {
   app.add_option("--height", settings.height)->check(between(1, 16384))->capture_default_str();
   app.add_option("--frames", settings.frames)->check(between(2, 1e6))->capture_default_str();
   app.add_option("--split", settings.split)->check(between(0, 1e9))->capture_default_str();
+  app.add_option("--method", settings.methods, "Only these, by their names in the table");
   app.add_option("--check", settings.check, "Compare each so many frames; 0: none")->check(between(0, 1e6));
   return sightline::benchMain(app, argc, argv, [&] { sightline::bench(settings); });
 }

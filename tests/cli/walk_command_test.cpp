@@ -123,12 +123,32 @@ TEST_F(WalkCommandTest, SaysWhatIsWrong) {
             {"views:CELL takes the cell of a bake"});
   expectRun("walk " + at("c.glb") + " --path " + at("w.json") + " --device fast", 2,
             {"no device \"fast\" draws"});
+  expectRun("walk nothing.glb --path w.json --device fast", 2, {"no device \"fast\" draws"});
   const auto bad = folder_.write("bad.json", R"({"keys":[]})");
   expectRun("walk " + at("c.glb") + " --path " + bad.string() + " --device cpu", 2,
             {"bad.json: keys: is empty"});
   const auto one = folder_.write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   expectRun("walk " + one.string() + " --path " + at("w.json") + " --device cpu --resolution 8x8 --repeats 1",
             0, {"the scene is one object", "--split"});
+}
+
+TEST_F(WalkCommandTest, NamesOptionsThatNothingTakes) {
+  expectRun(
+      walk("--methods vfc --no-c-queue --batch 7 --outside nearest --schedule fixed --trace-every 0 "
+           "--trace-device "
+           "cpu --views 3 --doors open"),
+      0,
+      {"note: --no-c-queue does nothing here: it is of opti-chc++",
+       "note: --batch does nothing here: it is of chc++, opti-chc++",
+       "note: --outside does nothing here: it is of pvs, pvs+vfc, pvs+hiz",
+       "note: --schedule does nothing here", "note: --trace-device does nothing here",
+       "note: --views does nothing here: it is of --path views:CELL", "note: --doors does nothing here"});
+  const std::string taken =
+      test::runProgram(walk("--methods chc++ --batch 7 --schedule fixed --no-tight --trace-every 30")).output;
+  EXPECT_EQ(taken.find("does nothing"), std::string::npos) << taken;
+  expectRun(walk("--methods vfc --check none --trace-every 5"), 0, {"note: --trace-every does nothing here"});
+  expectRun("scene city --triangles 2000 -o " + at("e.glb") + " --frames 60", 2, {"--frames", "--walk"});
+  expectRun("scene --help", 0, {"Of the walk, 60 to 1000000"});
 }
 
 TEST_F(WalkCommandTest, EndsWellOnCtrlC) {

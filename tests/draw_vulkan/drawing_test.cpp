@@ -104,6 +104,8 @@ VulkanAbilities everything() {
   }
   all.queues = {VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT};
   all.timestamp_bits = {64};
+  all.sub_pixel_bits = 8;
+  all.group_size = 256;
   return all;
 }
 
@@ -121,6 +123,11 @@ TEST(DrawingNeeds, WhatLacksIsNamed) {
   VulkanAbilities computes = everything();
   computes.queues = {VK_QUEUE_COMPUTE_BIT};
   expectParts(whyUnusable(computes, drawingNeeds()), {"no queue for graphics"});
+  VulkanAbilities coarse = everything(), narrow = everything();
+  coarse.sub_pixel_bits = 4;
+  narrow.group_size = 128;
+  expectParts(whyUnusable(coarse, drawingNeeds()), {"4 bits (subPixelPrecisionBits), 8 are needed"});
+  expectParts(whyUnusable(narrow, drawingNeeds()), {"128 invocations", "256 are needed"});
   expectParts(whyUnusable(lacking(kQueryReset), drawingNeeds()), {"queries", "hostQueryReset"});
   expectParts(whyUnusable(lacking(kMultiDraw), drawingNeeds()), {"multiDrawIndirect"});
   expectParts(whyUnusable(lacking(kFirstInstance), drawingNeeds()), {"drawIndirectFirstInstance"});

@@ -255,6 +255,8 @@ TEST(GpuCulling, DrawsCandidatesOnly) {
 TEST(CullUnits, MeshletsHoldTheDrawablesTriangles) {
   const City city;
   const CullUnits units = meshletUnits(city.scene, city.parts.drawables);
+  EXPECT_LE(units.units.size(), mostMeshletUnits(city.parts.drawables));
+  EXPECT_GT(units.units.size(), mostMeshletUnits(city.parts.drawables) / 4) << "and no wild guess";
   std::map<uint32_t, std::multiset<std::array<uint32_t, 3>>> found, expected;
   const auto add = [](auto& to, uint32_t drawable, glm::uvec3 t) {
     while (t.x > t.y || t.x > t.z) t = {t.y, t.z, t.x};  // which corner is first says nothing

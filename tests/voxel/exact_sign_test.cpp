@@ -78,5 +78,27 @@ TEST(ExactSign, TellsSidesOfAPlaneAsRationalsDo) {
   EXPECT_GT(zeros, 50);
 }
 
+TEST(ExactSign, TellsTurnsAlongDiagonalsAndSignsOfSumsAsRationalsDo) {
+  std::mt19937_64 random(3);
+  int zeros = 0;
+  for (int i = 0; i < 20000; ++i) {
+    double v[9];
+    for (double& value : v) value = hardNumber(random);
+    const double d[3] = {double(int(random() % 3) - 1), double(int(random() % 3) - 1), 1};
+    const Rational ux = Rational(v[0]) - v[6], uy = Rational(v[1]) - v[7], uz = Rational(v[2]) - v[8];
+    const Rational vx = Rational(v[3]) - v[6], vy = Rational(v[4]) - v[7], vz = Rational(v[5]) - v[8];
+    const Rational along =
+        (uy * vz - uz * vy) * d[0] + (uz * vx - ux * vz) * d[1] + (ux * vy - uy * vx) * d[2];
+    zeros += along == 0;
+    ASSERT_EQ(orientAlong({d[0], d[1], d[2]}, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}),
+              signOf(along))
+        << i;
+    const Rational sum = Rational(v[0]) + v[1] + v[2] + v[3];
+    zeros += sum == 0;
+    ASSERT_EQ(signOfSum(v[0], v[1], v[2], v[3]), signOf(sum)) << i;
+  }
+  EXPECT_GT(zeros, 50);
+}
+
 }  // namespace
 }  // namespace sightline

@@ -93,7 +93,7 @@ TEST(CameraPath, NamesWhatIsWrong) {
   EXPECT_EQ(with([](CameraPath& p) { p.keys[2].frame = 10; }),
             "keys[2].frame: 10 is not above 10, the frame of the key before it");
   EXPECT_EQ(with([](CameraPath& p) { p.keys[3].frame = 1'000'000; }),
-            "keys[3].frame: 1000000 makes a path of more than 1000000 frames");
+            "keys[3].frame: is past 999999, the last frame that a path may have");
   EXPECT_EQ(with([](CameraPath& p) { p.keys[3].frame = 999'999; }), "");
   EXPECT_EQ(with([](CameraPath& p) { p.keys[1].at.eye.y = NAN; }), "keys[1].eye[1]: is not a finite number");
   EXPECT_EQ(with([](CameraPath& p) { p.keys[1].at.look.z = 1e300; }),
@@ -218,7 +218,7 @@ TEST(WalkFile, NamesFileAndPlaceOfWhatIsWrong) {
             "w.json: keys[0].look: is the eye's place; there is nothing to look at");
   EXPECT_EQ(readError(R"({"keys":[{"frame":0,"eye":[1,0,0],"look":[0,0,0]},
                                {"frame":1e9,"eye":[1,0,0],"look":[0,0,0]}]})"),
-            "w.json: keys[1].frame: 1000000 makes a path of more than 1000000 frames");
+            "w.json: keys[1].frame: is past 999999, the last frame that a path may have");
 }
 
 }  // namespace

@@ -181,6 +181,75 @@ TEST(Replay, EndsWellWhereItIsStopped) {
   }
 }
 
+WalkReport reportOf(const WalkReplay& found, uint32_t frames) {
+  WalkReport report;
+  report.replay = found;
+  report.frames.cameras.resize(frames);
+  report.gpu_times = true;
+  return report;
+}
+
+TEST(Replay, StoppedInTheWarmUpSaysWhatWasNotRun) {
+  Script script;
+  std::atomic<bool> stop = false;
+  script.before = [&](const std::string& method, uint32_t, uint32_t frame) {
+    if (method == "vfc" && frame == 2) stop = true;
+  };
+  const WalkReplay found =
+      replayScript(script, {"none", "vfc", "chc"}, 5, {.repeats = 1}, {.progress = {}, .stop = &stop});
+  ASSERT_EQ(found.methods.size(), 3u);
+  EXPECT_TRUE(found.methods[0].warm_up && found.methods[1].warm_up && !found.methods[2].warm_up);
+  EXPECT_EQ(found.methods[0].times.size(), 5u) << "what was measured is kept";
+  EXPECT_EQ(found.methods[1].times.size(), 3u);
+  for (const FrameTimes& t : found.methods[1].times) EXPECT_GE(t.gpu_frame, 100) << "of the last frame, too";
+  const WalkReport report = reportOf(found, 5);
+  const Json json = walkJson(report);
+  EXPECT_EQ(json["methods"][0]["frames"], 5);
+  EXPECT_EQ(json["methods"][0]["warm_up"], true);
+  EXPECT_EQ(json["methods"][0]["mean_ms"], 1);
+  EXPECT_EQ(json["methods"][2]["frames"], 0);
+  EXPECT_EQ(json["methods"][2]["warm_up"], false);
+  for (const char* key :
+       {"mean_ms", "median_ms", "slowest_1_percent_ms", "slowest_01_percent_ms", "gpu_ms", "cpu_ms",
+        "objects", "triangles", "queries", "submits", "waits", "frames_outside"}) {
+    EXPECT_TRUE(json["methods"][2][key].is_null()) << key;
+    EXPECT_FALSE(json["methods"][0][key].is_null()) << key;
+  }
+  EXPECT_EQ(walkCsv(report).find("\nchc,"), std::string::npos);
+  EXPECT_NE(walkTable(report).find("\nchc              not run\n"), std::string::npos) << walkTable(report);
+  EXPECT_EQ(walkNotes(report),
+            (std::vector<std::string>{
+                "times of none, vfc are of the warm-up: the walk was stopped before a repeat"}));
+}
+
+TEST(Replay, AWholeRepeatIsNoWarmUp) {
+  Script script;
+  std::atomic<bool> stop = false;
+  script.takes = [](const std::string&, uint32_t replay, uint32_t) { return replay == 0 ? 50.0 : 2.0; };
+  script.before = [&](const std::string& method, uint32_t replay, uint32_t frame) {
+    if (method == "none" && replay == 1 && frame == 1) stop = true;  // "vfc" is the first of the repeat
+  };
+  const WalkReplay found =
+      replayScript(script, {"none", "vfc"}, 5, {.repeats = 1}, {.progress = {}, .stop = &stop});
+  EXPECT_FALSE(found.methods[0].warm_up);
+  EXPECT_EQ(found.methods[0].times.size(), 2u);
+  EXPECT_EQ(found.methods[0].times[1].frame, 2) << "not of the warm-up";
+  EXPECT_FALSE(found.methods[1].warm_up);
+  EXPECT_EQ(found.methods[1].repeats, 1u);
+  EXPECT_TRUE(walkNotes(reportOf(found, 5)).empty());
+}
+
+TEST(WalkReport, WarnsOfADeviceThatDrawsWhatNoRayMeets) {
+  WalkReport report;
+  report.width = 100, report.height = 10;
+  report.replay.traced = {{.frame = 0, .other_pixels = 9, .unexplained_pixels = 1},
+                          {.frame = 50, .unexplained_pixels = 1}};
+  EXPECT_TRUE(walkNotes(report).empty()) << "surfaces in one place give some";
+  report.replay.traced[1].unexplained_pixels = 2;
+  ASSERT_EQ(walkNotes(report).size(), 1u);
+  EXPECT_EQ(walkNotes(report)[0].find("3 of the 2000 pixels of traced frames show what no ray"), 0u);
+}
+
 TEST(Replay, KeepsTheFramesBeforeADeviceIsLost) {
   Script script;
   script.before = [](const std::string& method, uint32_t, uint32_t frame) {
@@ -191,10 +260,7 @@ TEST(Replay, KeepsTheFramesBeforeADeviceIsLost) {
   EXPECT_EQ(found.problem, "vkQueueSubmit: device lost");
   EXPECT_EQ(found.problem_code, kExitFailed);
   EXPECT_EQ(found.methods[1].times.size(), 3u);
-  WalkReport report;
-  report.replay = found;
-  report.frames.cameras.resize(5);
-  const std::string csv = walkCsv(report);
+  const std::string csv = walkCsv(reportOf(found, 5));
   EXPECT_NE(csv.find("\nvfc,2,"), std::string::npos) << csv;
   EXPECT_EQ(csv.find("\nvfc,3,"), std::string::npos) << csv;
 }

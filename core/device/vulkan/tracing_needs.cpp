@@ -29,16 +29,16 @@ const char* vulkanLayout(bool pipelines) {
   return pipelines ? "driver's own tree, ray tracing pipelines" : "driver's own tree, ray queries";
 }
 
-VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size) {
-  if (!usesPipelines(context)) return VulkanStage::compute(context, name + ".comp", group_size);
-  return VulkanStage::rays(context, name + ".rgen", "nothing.rmiss", "nearest.rchit");
-}
-
 VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size,
                          const SurfaceFeatures& features) {
-  if (!features.any()) return tracingStage(context, name, group_size);
-  return VulkanStage::compute(context, name + (features.glass ? ".glass.comp" : ".surfaces.comp"),
-                              group_size);
+  const std::string kind = features.glass ? ".glass" : features.any() ? ".surfaces" : "";
+  if (!usesPipelines(context)) return VulkanStage::compute(context, name + kind + ".comp", group_size);
+  VulkanRayShaders shaders{
+      .generation = name + kind + ".rgen", .miss = "nothing" + kind + ".rmiss", .hits = {}};
+  shaders.hits.push_back({.closest_hit = "nearest" + kind + ".rchit",
+                          .any_hit = features.any() ? "nearest" + kind + ".rahit" : ""});
+  if (features.glass) shaders.hits.push_back({.closest_hit = "", .any_hit = "glass.rahit"});
+  return VulkanStage::rays(context, shaders);
 }
 
 std::string whyNoHemicubes(const VulkanContext& context) {

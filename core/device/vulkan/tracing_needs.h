@@ -16,12 +16,10 @@ bool usesPipelines(const VulkanContext& context);
 /// DeviceInfo::layout of either kind.
 const char* vulkanLayout(bool pipelines);
 
-/// A tracing stage (trace_random, ...) of the context's kind. group_size: of ray queries.
-VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size);
-
-/// The same for scenes with these surfaces, on a context of ray queries.
+/// A tracing stage (trace_random, ...) of the context's kind, for scenes with these surfaces. group_size: of
+/// ray queries.
 VulkanStage tracingStage(const VulkanContext& context, const std::string& name, uint32_t group_size,
-                         const SurfaceFeatures& features);
+                         const SurfaceFeatures& features = {});
 
 /// Why a context cannot draw hemicubes, in one line; empty: it can.
 std::string whyNoHemicubes(const VulkanContext& context);

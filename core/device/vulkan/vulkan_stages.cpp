@@ -23,7 +23,7 @@ constexpr uint32_t kGroup = 64;
 VulkanStages::VulkanStages(const std::string& selector, const Scene& scene, const Bvh& bvh,
                            const DeviceOptions& options)
     : features_(featuresOf(scene.surfaces)),
-      context_(selector, tracingNeeds(options.ray_queries || features_.any()), options.memory_budget_bytes),
+      context_(selector, tracingNeeds(options.ray_queries), options.memory_budget_bytes),
       runner_(context_),
       group_(options.work_group_size > 0 ? options.work_group_size : kGroup),
       scene_(uploadVulkanScene(context_, scene, bvh, options.part_triangles)) {

@@ -140,11 +140,28 @@ bool CommandRing::arrived(Entry& entry, uint64_t serial, Answers& answers, uint3
   const double start = now();  // some drivers wait here, though asked not to
   const VkResult code = context_.api().vkGetQueryPoolResults(context_.device(), entry.queries.get(), query, 1,
                                                              sizeof samples, &samples, sizeof samples, 0);
-  cpu_.wait += now() - start;
+  if (code == VK_SUCCESS) {
+    answers[query] = samples > 0;
+    takeAnswers(entry, answers, query + 1);
+  }
+  cpu_.look += now() - start;
   if (code == VK_NOT_READY) return false;
   checkVk(code, "vkGetQueryPoolResults");
-  answers[query] = samples > 0;
   return true;
+}
+
+void CommandRing::takeAnswers(Entry& entry, Answers& answers, uint32_t first) {
+  const auto count = uint32_t(answers.size()) - first;
+  if (count == 0) return;
+  taken_.resize(count);
+  const VkResult code = context_.api().vkGetQueryPoolResults(
+      context_.device(), entry.queries.get(), first, count, count * sizeof taken_[0], taken_.data(),
+      sizeof taken_[0], VK_QUERY_RESULT_WITH_AVAILABILITY_BIT);
+  if (code != VK_NOT_READY) checkVk(code, "vkGetQueryPoolResults");
+  for (uint32_t i = 0; i < count; ++i) {
+    const auto [samples, there] = taken_[i];
+    if (there != 0) answers[first + i] = samples > 0;
+  }
 }
 
 bool CommandRing::answer(Entry& entry, uint64_t serial, Answers& answers, uint32_t query) {
@@ -158,6 +175,7 @@ bool CommandRing::answer(Entry& entry, uint64_t serial, Answers& answers, uint32
         "vkGetQueryPoolResults");
     answers[query] = samples > 0;
     cpu_.wait += now() - start;
+    takeAnswers(entry, answers, query + 1);
   }
   return answers[query] > 0;
 }

@@ -23,7 +23,9 @@ struct GpuTimes {
 /// The processor's time in a frame in milliseconds, without what the method itself takes; all 0 without a
 /// clock.
 struct CpuTimes {
-  double record = 0, submit = 0, wait = 0;
+  double record = 0, submit = 0;
+  double look = 0;  ///< to find out whether answers have arrived
+  double wait = 0;  ///< for answers that had not
 };
 
 /// Milliseconds from whenever; empty: no time is measured.
@@ -63,7 +65,8 @@ class CommandRing {
   void mark(Entry& entry, GpuPart part);
   void submit(Entry& entry);
 
-  /// Whether the answer of an entry's query is there; never waits. serial: of the submit.
+  /// Whether the answer of an entry's query is there; never waits. serial: of the submit. With one all the
+  /// submit's answers that are there are taken, so that the driver is not asked for each.
   bool arrived(Entry& entry, uint64_t serial, Answers& answers, uint32_t query);
   /// Waits for it.
   bool answer(Entry& entry, uint64_t serial, Answers& answers, uint32_t query);
@@ -87,6 +90,8 @@ class CommandRing {
 
   std::unique_ptr<Entry> make() const;
   double now() const { return clock_ ? clock_() : 0; }
+  /// Takes the answers from this one on that are there.
+  void takeAnswers(Entry& entry, Answers& answers, uint32_t first);
   void reserveQueries(Entry& entry, uint32_t queries) const;
   /// Keeps what the entry's queries and times say.
   void harvest(Entry& entry);
@@ -95,6 +100,7 @@ class CommandRing {
   DrawClock clock_;
   std::deque<std::unique_ptr<Entry>> entries_;  ///< the oldest first
   std::deque<FrameTicks> frames_;
+  std::vector<std::array<uint32_t, 2>> taken_;  ///< samples, and whether they are there; kept for its memory
   CpuTimes cpu_;
   uint64_t frame_ = 0, serial_ = 0, waits_ = 0;
 };

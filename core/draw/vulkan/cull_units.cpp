@@ -107,6 +107,17 @@ CullUnits drawableUnits(const Drawables& drawables) {
   });
 }
 
+uint64_t mostMeshletUnits(const Drawables& drawables) {
+  uint64_t most = 0;
+  for (const Drawable& drawable : drawables.list) {
+    most += drawable.alpha == AlphaKind::opaque
+                ? meshopt_buildMeshletsBound(size_t(3) * drawable.triangle_count, kMeshletVertices,
+                                             kMeshletTriangles)
+                : 1;
+  }
+  return most;
+}
+
 CullUnits meshletUnits(const Scene& scene, const Drawables& drawables) {
   std::vector<CullUnits> made(drawables.list.size());
   tbb::parallel_for(size_t(0), made.size(), [&](size_t i) {

@@ -23,6 +23,9 @@ CullUnits drawableUnits(const Drawables& drawables);
 /// Most vertices and triangles of a meshlet: vk_shaders/meshlet.mesh emits no more.
 inline constexpr uint32_t kMeshletVertices = 64, kMeshletTriangles = 124;
 
+/// No fewer units than meshletUnits gives, told without making them.
+uint64_t mostMeshletUnits(const Drawables& drawables);
+
 /// Opaque drawables cut into meshlets (meshoptimizer), a unit each; the others as they are. Meshlets have no
 /// cones: both sides of a triangle are seen.
 CullUnits meshletUnits(const Scene& scene, const Drawables& drawables);

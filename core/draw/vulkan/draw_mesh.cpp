@@ -41,6 +41,13 @@ DrawMesh::DrawMesh(const VulkanContext& context, const Scene& scene, const Drawa
         "{} triangles of the scene and of lists are too many to draw, {} at most; take fewer cells",
         slots.size(), (uint64_t(1) << 32) / 3));
   }
+  if (scene.vertexCount() > uint64_t(context.limits().vertex_number) + 1) {
+    throw Error(
+        fmt::format("the scene has {} vertices, and {} ({}) draws {} at most (maxDrawIndexedIndexValue); "
+                    "take a smaller scene",
+                    scene.vertexCount(), context.info().id, context.info().name,
+                    uint64_t(context.limits().vertex_number) + 1));
+  }
   positions_ = context.buffer(scene.vertexCount() * 12, {"vertices of the scene", "a smaller scene"});
   indices_ = context.buffer(slots.size() * 12, {"triangles of the scene", "a smaller scene"});
   VulkanUpload upload(context);

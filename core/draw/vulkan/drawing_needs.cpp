@@ -13,6 +13,8 @@ VulkanNeeds drawingNeeds() {
   needs.none =
       "no Vulkan device found: install a GPU's driver, or mesa-vulkan-drivers 25 or later for the processor";
   needs.queue = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  needs.sub_pixel_bits = 8;  // of BoxGuard and core/shared/guarded_box.h
+  needs.group_size = 256;    // of vk_shaders
   return needs;
 }
 

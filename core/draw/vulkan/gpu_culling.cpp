@@ -33,30 +33,47 @@ void updateBuffer(const VulkanContext& context, VkCommandBuffer commands, const 
   }
 }
 
+/// Units that one list of the device holds.
+uint64_t mostUnits(const VulkanLimits& limits) {
+  return std::min<uint64_t>(limits.draws, uint64_t(limits.launch_groups) * kCullBlock);
+}
+
 }  // namespace
+
+std::string whyNotCull(const VulkanDrawing& drawing, GpuMethod method) {
+  const VulkanContext& context = drawing.context();
+  if (std::string why = whyNotMethod(context.abilities(), method); !why.empty()) return why;
+  const bool meshlets = method == GpuMethod::hizMeshlets;
+  if (meshlets && drawing.mesh().hasSides()) {
+    return "the scene has triangles that only their front shows, which meshlets do not know; take hiz";
+  }
+  const Drawables& drawables = drawing.mesh().drawables();
+  const uint64_t most = mostUnits(context.limits());
+  uint64_t units = drawables.list.size();
+  if (meshlets && mostMeshletUnits(drawables) > most) {  // only then they are worth making to be counted
+    units = meshletUnits(drawing.mesh().scene(), drawables).units.size();
+  }
+  if (units <= most) return "";
+  return fmt::format("{} {} are more than the {} draws of one list; {}", units,
+                     meshlets ? "meshlets" : "objects", most,
+                     meshlets ? "take hiz" : "give a larger --split");
+}
 
 GpuCulling::GpuCulling(VulkanDrawing& drawing, GpuMethod method, const GpuCullingOptions& options)
     : drawing_(drawing), method_(method), faults_(options.faults) {
   const VulkanContext& context = drawing.context();
-  const auto refuse = [&](const std::string& why) {
+  if (const std::string why = whyNotCull(drawing, method); !why.empty()) {
     throw Error(fmt::format("{} ({}) cannot cull by {}: {}", context.info().id, context.info().name,
                             method == GpuMethod::boxes ? "boxes"
                             : method == GpuMethod::hiz ? "hiz"
                                                        : "hiz-meshlets",
                             why));
-  };
-  if (const std::string why = whyNotMethod(context.abilities(), method); !why.empty()) refuse(why);
-  if (method == GpuMethod::hizMeshlets && drawing.mesh().hasSides()) {
-    refuse("the scene has triangles that only their front shows, which meshlets do not know; take hiz");
   }
   const Drawables& drawables = drawing.mesh().drawables();
   const bool meshlets = method == GpuMethod::hizMeshlets;
   units_ = meshlets ? meshletUnits(drawing.mesh().scene(), drawables) : drawableUnits(drawables);
-  meshes_ = meshlets && options.mesh_shaders && context.has(VulkanFeature::kMeshShaders);
-  if (unitCount() > context.limits().draws || blocksOf(unitCount()) > context.limits().launch_groups) {
-    refuse(fmt::format("{} draws are more than the {} of one list; give a larger --split", unitCount(),
-                       context.limits().draws));
-  }
+  meshes_ = meshlets && options.mesh_shaders && context.has(VulkanFeature::kMeshShaders) &&
+            unitCount() <= context.limits().mesh_groups;
   createBuffers();
 }
 

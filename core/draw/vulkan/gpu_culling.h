@@ -18,6 +18,10 @@ struct GpuCullingOptions {
   GpuCullingFaults faults = {};
 };
 
+/// Why the drawing cannot cull by the method, in one line: what its device lacks, or what its scene has;
+/// empty: it can.
+std::string whyNotCull(const VulkanDrawing& drawing, GpuMethod method);
+
 /// Culls on the GPU in two passes: what was seen in the frame before is drawn at once; what that hides is
 /// found, by a pyramid of its depth or by drawn boxes; what is seen and was not drawn is drawn then. The
 /// processor records one submit a frame, whatever is seen, and waits for nothing.
