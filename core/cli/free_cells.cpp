@@ -19,9 +19,6 @@
 namespace sightline {
 namespace {
 
-/// Without --reach, one may stand on the largest part of the floor, and on others down to this share of it.
-constexpr double kSmallPart = 0.1;
-
 /// Stops in order, and shows how far it is.
 class Watched {
  public:
@@ -94,8 +91,8 @@ std::string voxelsText(const Lattice& lattice) {
 }
 
 /// The parts of the floor that count.
-std::vector<bool> chooseParts(const Floor& floor, const FreeSpace& free,
-                              const std::vector<glm::dvec3>& seeds) {
+std::vector<bool> chooseParts(const Floor& floor, const FreeSpace& free, const std::vector<glm::dvec3>& seeds,
+                              double least_tiles) {
   std::vector<bool> keep(floor.part_sizes.size(), false);
   for (const glm::dvec3& seed : seeds) {
     const uint32_t tile = tileBelow(floor, *free.space, voxelAt(free.grid.lattice, seed));
@@ -108,8 +105,8 @@ std::vector<bool> chooseParts(const Floor& floor, const FreeSpace& free,
     keep[floor.tiles[tile].part] = true;
   }
   if (!seeds.empty()) return keep;
-  const double largest = double(*std::ranges::max_element(floor.part_sizes));
-  for (size_t i = 0; i < keep.size(); ++i) keep[i] = double(floor.part_sizes[i]) >= kSmallPart * largest;
+  // Not on tables and ledges: parts as large as a box may be.
+  for (size_t i = 0; i < keep.size(); ++i) keep[i] = double(floor.part_sizes[i]) >= least_tiles;
   return keep;
 }
 
@@ -129,7 +126,14 @@ PlacedOnFloor runFloor(const Scene& scene, const FreeSpace& free, const std::vec
     throw Error(fmt::format("the scene has no floor with {:g} free above it (--head) in {}", options.head,
                             voxelsText(lattice)));
   }
-  const Floor floor = partsOf(all, chooseParts(all, free, seeds));
+  const double along = options.largest / lattice.voxelSize();
+  const Floor floor = partsOf(all, chooseParts(all, free, seeds, along * along));
+  if (floor.tiles.empty()) {
+    throw Error(
+        fmt::format("no part of the floor is as large as a box of {:g}: take a smaller --floor, or the "
+                    "part below a place by --reach",
+                    options.largest));
+  }
   PlacedOnFloor placed{{}, floor.part_sizes.size(), all.part_sizes.size()};
   placed.cells = floorCells(scene, buildSceneTree(scene), lattice, floor, options);
   return placed;
@@ -175,7 +179,8 @@ std::vector<ViewCell> placeOnFloor(const Scene& scene, const FreeCellsArguments&
                 std::string(cells.in_solid > 0 ? " outside of solids: try --free-side or --reach"
                                                : ": try a smaller --least"));
   }
-  fmt::print("{} cover {:.1f} % of it\n", counted(cells.cells.size(), "box"),
+  fmt::print("{} {:.1f} % of it\n",
+             cells.cells.size() == 1 ? "1 box covers" : fmt::format("{} boxes cover", cells.cells.size()),
              100 * double(cells.covered) / double(cells.tiles));
   if (cells.in_solid > 0) fmt::print("{} more are inside of solids\n", cells.in_solid);
   if (cells.inset > 0) {

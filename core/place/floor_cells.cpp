@@ -83,7 +83,16 @@ struct Heights {
 class Patches {
  public:
   Patches(const Floor& floor, const FloorLimits& limits)
-      : floor_(floor), limits_(limits), is_covered_(floor.tiles.size(), 0) {}
+      : floor_(floor),
+        limits_(limits),
+        is_covered_(floor.tiles.size(), 0),
+        before_x_(floor.tiles.size(), FloorTile::kNoTile),
+        before_z_(before_x_) {
+    for (uint32_t i = 0; i < floor.tiles.size(); ++i) {
+      if (floor.tiles[i].next_x != FloorTile::kNoTile) before_x_[floor.tiles[i].next_x] = i;
+      if (floor.tiles[i].next_z != FloorTile::kNoTile) before_z_[floor.tiles[i].next_z] = i;
+    }
+  }
 
   // The largest patch of tiles that no other covers, with this one as its corner of lowest x and z; area 0:
   // none that is large enough.
@@ -93,8 +102,10 @@ class Patches {
     std::vector<Heights> columns;  // over the rows so far, of each x
     std::vector<uint32_t> row;     // the row's tiles
     uint32_t first = tile;
-    int width = limits_.largest;
-    for (int z = 1; z <= limits_.largest && first != FloorTile::kNoTile; ++z) {
+    // Less than the largest, so that patches can still grow by strips too narrow for one of their own.
+    const int most = std::max(limits_.largest - limits_.least, limits_.least);
+    int width = most;
+    for (int z = 1; z <= most && first != FloorTile::kNoTile; ++z) {
       width = addRow(first, z == 1, width, columns, row);
       if (width < limits_.least) break;
       const Patch patch{tile, width, z};
@@ -106,6 +117,27 @@ class Patches {
 
   void cover(const Patch& patch) {
     forTiles(patch, [&](uint32_t tile) { is_covered_[tile] = 1; });
+  }
+
+  // The patch with rows of tiles that nothing covers taken in on its sides, as long as it fits: strips that
+  // are too narrow for a patch of their own.
+  Patch grown(Patch patch) {
+    forTiles(patch, [&](uint32_t tile) { is_covered_[tile] = 0; });
+    for (bool is_changed = true; is_changed;) {
+      is_changed = false;
+      const auto take = [&](uint32_t corner, int x, int z) {
+        if (corner == FloorTile::kNoTile || x > limits_.largest || z > limits_.largest) return;
+        if (!isFree({corner, x, z})) return;
+        patch = {corner, x, z};
+        is_changed = true;
+      };
+      take(patch.tile, patch.x + 1, patch.z);
+      take(patch.tile, patch.x, patch.z + 1);
+      take(before_x_[patch.tile], patch.x + 1, patch.z);
+      take(before_z_[patch.tile], patch.x, patch.z + 1);
+    }
+    cover(patch);
+    return patch;
   }
 
   Heights heightsOf(const Patch& patch) const {
@@ -122,6 +154,17 @@ class Patches {
 
   bool fits(const Heights& heights) const {
     return heights.high - heights.low <= limits_.step && heights.ceiling - heights.high > limits_.eye;
+  }
+
+  // Whether a patch fits there, of tiles that nothing covers.
+  bool isFree(const Patch& patch) const {
+    std::vector<Heights> columns;
+    std::vector<uint32_t> row;
+    uint32_t first = patch.tile;
+    for (int z = 0; z < patch.z; ++z, first = floor_.tiles[first].next_z) {
+      if (first == FloorTile::kNoTile || addRow(first, z == 0, patch.x, columns, row) < patch.x) return false;
+    }
+    return true;
   }
 
   // How far the rows go on with this one, at most as far as before. row: the tiles of the row before, then of
@@ -163,6 +206,7 @@ class Patches {
   const Floor& floor_;
   const FloorLimits& limits_;
   std::vector<uint8_t> is_covered_;
+  std::vector<uint32_t> before_x_, before_z_;  // the tile of which one is the next
 };
 
 // The largest patch, then the largest of what it leaves, and so on. A tile's largest patch only shrinks as
@@ -195,6 +239,7 @@ std::vector<Patch> takePatches(Patches& patches, const Floor& floor, const Floor
     if (options.stop != nullptr && *options.stop) throw Interrupted();
     if (options.progress) options.progress(0.5 + 0.5 * double(left) / double(all));
   }
+  for (Patch& patch : taken) patch = patches.grown(patch);
   return taken;
 }
 
@@ -226,6 +271,29 @@ std::optional<ViewCell> clearCell(const Scene& scene, const Bvh& bvh, const Latt
   return std::nullopt;
 }
 
+// A patch's box, and what becomes of it.
+struct Placed {
+  VoxelBox box;
+  uint32_t part = 0;
+  std::optional<ViewCell> cell;
+  bool is_solid = false;
+
+  uint64_t tiles() const {
+    return uint64_t(box.high.x - box.low.x + 1) * uint64_t(box.high.z - box.low.z + 1);
+  }
+};
+
+// The parts of which not more is found in solids than out of them.
+std::vector<bool> freeParts(const Floor& floor, const std::vector<Placed>& placed) {
+  std::vector<int64_t> balance(floor.part_sizes.size(), 0);
+  for (const Placed& one : placed) {
+    if (one.cell) balance[one.part] += one.is_solid ? -int64_t(one.tiles()) : int64_t(one.tiles());
+  }
+  std::vector<bool> is_free(balance.size());
+  for (size_t i = 0; i < balance.size(); ++i) is_free[i] = balance[i] >= 0;
+  return is_free;
+}
+
 }  // namespace
 
 FloorOptions floorOptions(const Lattice& lattice, const FloorCellOptions& options) {
@@ -242,40 +310,40 @@ FloorCells floorCells(const Scene& scene, const Bvh& bvh, const Lattice& lattice
   checkMargin(margin, smallest, "cells on the floor");
   const FloorLimits limits = limitsOf(lattice, options);
   Patches patches(floor, limits);
-  const std::vector<Patch> taken = takePatches(patches, floor, options);
-  std::vector<VoxelBox> boxes(taken.size());
-  std::vector<std::optional<ViewCell>> cells(taken.size());
-  for (size_t i = 0; i < taken.size(); ++i) {
-    boxes[i] = boxOf(taken[i], patches.heightsOf(taken[i]), floor, limits.head);
+  std::vector<Placed> placed;
+  for (const Patch& patch : takePatches(patches, floor, options)) {
+    placed.push_back({boxOf(patch, patches.heightsOf(patch), floor, limits.head),
+                      floor.tiles[patch.tile].part,
+                      {},
+                      false});
   }
-  std::sort(boxes.begin(), boxes.end(), [](const VoxelBox& a, const VoxelBox& b) {
-    return std::tie(a.low.y, a.low.z, a.low.x) < std::tie(b.low.y, b.low.z, b.low.x);
+  std::sort(placed.begin(), placed.end(), [](const Placed& a, const Placed& b) {
+    return std::tie(a.box.low.y, a.box.low.z, a.box.low.x) < std::tie(b.box.low.y, b.box.low.z, b.box.low.x);
   });
-  tbb::parallel_for(size_t{0}, boxes.size(), [&](size_t i) {
-    if (options.stop == nullptr || !*options.stop)
-      cells[i] = clearCell(scene, bvh, lattice, boxes[i], margin);
-  });
-  if (options.stop != nullptr && *options.stop) throw Interrupted();
   const CpuTracer tracer(scene, bvh);
   const SolidProbe probe(scene, tracer, options.free_side);
-  std::vector<uint8_t> is_solid(cells.size(), 0);
-  tbb::parallel_for(size_t{0}, cells.size(),
-                    [&](size_t i) { is_solid[i] = cells[i] && probe.isInSolid(cells[i]->center); });
+  tbb::parallel_for(size_t{0}, placed.size(), [&](size_t i) {
+    if (options.stop != nullptr && *options.stop) return;
+    placed[i].cell = clearCell(scene, bvh, lattice, placed[i].box, margin);
+    placed[i].is_solid = placed[i].cell && probe.isInSolid(placed[i].cell->center);
+  });
+  if (options.stop != nullptr && *options.stop) throw Interrupted();
+  const std::vector<bool> is_free = freeParts(floor, placed);
   FloorCells result;
-  result.tiles = floor.tiles.size();
-  for (size_t i = 0; i < cells.size(); ++i) {
-    if (!cells[i]) continue;
-    if (is_solid[i] != 0) {
+  for (size_t part = 0; part < is_free.size(); ++part)
+    result.tiles += is_free[part] ? floor.part_sizes[part] : 0;
+  for (Placed& one : placed) {
+    if (!one.cell) continue;
+    if (!is_free[one.part] || one.is_solid) {
       ++result.in_solid;
-      const glm::ivec3 size = boxes[i].high - boxes[i].low + 1;
-      result.tiles -= uint64_t(size.x) * uint64_t(size.z);
+      if (is_free[one.part]) result.tiles -= one.tiles();
       continue;
     }
-    cells[i]->name = fmt::format("floor-{}", result.cells.size() + 1);
-    result.inset += cells[i]->size != cellOf(lattice, boxes[i]).size;
-    result.cells.push_back(std::move(*cells[i]));
+    one.cell->name = fmt::format("floor-{}", result.cells.size() + 1);
+    result.inset += one.cell->size != cellOf(lattice, one.box).size;
+    result.cells.push_back(std::move(*one.cell));
   }
-  result.covered = coveredTiles(lattice, floor, options.eye, result.cells);
+  result.covered = coveredTiles(lattice, partsOf(floor, is_free), options.eye, result.cells);
   if (options.progress) options.progress(1);
   return result;
 }

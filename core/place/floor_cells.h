@@ -24,7 +24,7 @@ struct FloorCellOptions {
   /// defaultMargin (core/place/clear_box.h).
   std::optional<double> margin;
   /// Leave out cells inside of solids by the rays of inSolid (core/scene/in_solid.h), and the tiles under
-  /// them.
+  /// them; of parts of the floor that are more inside than outside, all.
   FreeSide free_side = FreeSide::kAny;
   std::function<void(double done)> progress = {};  ///< on the caller's thread, 0 to 1, ascending
   const std::atomic<bool>* stop = nullptr;         ///< ends it with Interrupted when it becomes true

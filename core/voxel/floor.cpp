@@ -82,6 +82,31 @@ uint32_t neighbour(const Floor& floor, const FloorTile& tile, int x, int z, cons
   return room >= options.head ? next : FloorTile::kNoTile;
 }
 
+// Whether a column next to the tile's is free from head to more than a step below it.
+bool isAtEdge(const VoxelSpace& space, const FloorTile& tile, const FloorOptions& options) {
+  for (int i = 0; i < 9; ++i) {
+    if (i == 4) continue;
+    glm::ivec3 at(tile.x + i % 3 - 1, tile.y - 1, tile.z + i / 3 - 1);  // most often met here
+    bool is_free = space.state(at) == VoxelState::kFree;
+    for (at.y = tile.y - 1 - options.step; is_free && at.y < tile.y + options.head; ++at.y) {
+      is_free = space.state(at) == VoxelState::kFree;
+    }
+    if (is_free) return true;
+  }
+  return false;
+}
+
+void leaveOutEdges(const VoxelSpace& space, const FloorOptions& options, std::vector<FloorTile>& tiles) {
+  std::vector<uint8_t> is_at_edge(tiles.size());
+  tbb::parallel_for(size_t{0}, tiles.size(),
+                    [&](size_t i) { is_at_edge[i] = isAtEdge(space, tiles[i], options); });
+  size_t kept = 0;
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    if (is_at_edge[i] == 0) tiles[kept++] = tiles[i];
+  }
+  tiles.resize(kept);
+}
+
 // Numbers the parts.
 void joinParts(Floor& floor) {
   std::vector<uint32_t> parent(floor.tiles.size());
@@ -139,6 +164,7 @@ Floor findFloor(const VoxelSpace& space, const FloorOptions& options) {
       options.progress(double(z - blocks.low.z + 1) / double(blocks.high.z - blocks.low.z + 1));
     }
   }
+  leaveOutEdges(space, options, floor.tiles);
   tbb::parallel_for(size_t{0}, floor.tiles.size(), [&](size_t i) {
     FloorTile& tile = floor.tiles[i];
     tile.next_x = neighbour(floor, tile, tile.x + 1, tile.z, options);

@@ -33,12 +33,13 @@ struct Floor {
   std::vector<uint64_t> part_sizes;  ///< tiles of each part; parts in the order of their first tiles
 };
 
-/// All tiles: free voxels of the space on a voxel that a triangle meets, with `head` free voxels from it up.
-/// Two are neighbours if they share a side seen from above, are at most `step` apart in height, and `head`
-/// voxels fit between the higher floor and the lower ceiling; a part is what neighbours join. Voxels keep
-/// their word, so the floor lies up to a voxel below a tile, and not above. Where the scene has no floor,
-/// there are no tiles. The same on any number of threads. Throws Error for more than 2^30 tiles, and
-/// Interrupted.
+/// All tiles: free voxels of the space on a voxel that a triangle meets, with `head` free voxels from it up,
+/// but those at an edge: next to one of the eight columns around is free from there down to more than `step`
+/// below, so that the floor may end within the tile. Two are neighbours if they share a side seen from above,
+/// are at most `step` apart in height, and `head` voxels fit between the higher floor and the lower ceiling;
+/// a part is what neighbours join. Voxels keep their word: the floor lies up to a voxel below a tile, and not
+/// above. Where the scene has no floor, there are no tiles. The same on any number of threads. Throws Error
+/// for more than 2^30 tiles, and Interrupted.
 Floor findFloor(const VoxelSpace& space, const FloorOptions& options);
 
 /// The tile that one who falls from a free voxel comes to stand on; kNoTile: none.

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/interrupted.h"
+#include "core/scene/object_of.h"
 #include "core/voxel/bin_triangles.h"
 #include "core/voxel/exact_sign.h"
 
@@ -58,13 +59,6 @@ std::vector<Column> columnsOf(const VoxelGrid& grid) {
     }
   }
   return columns;
-}
-
-uint32_t objectOf(const Scene& scene, uint32_t triangle) {
-  const auto after =
-      std::upper_bound(scene.objects.begin(), scene.objects.end(), triangle,
-                       [](uint32_t id, const SceneObject& object) { return id < object.first_triangle; });
-  return uint32_t(after - scene.objects.begin()) - 1;
 }
 
 // What is inside in the blocks of a column, from its first block to its last.
