@@ -127,7 +127,8 @@ PlacedOnFloor runFloor(const Scene& scene, const FreeSpace& free, const std::vec
                             voxelsText(lattice)));
   }
   const double along = options.largest / lattice.voxelSize();
-  const Floor floor = partsOf(all, chooseParts(all, free, seeds, along * along));
+  const std::vector<bool> keep = chooseParts(all, free, seeds, along * along);
+  const Floor floor = tilesOf(all, [&](uint32_t tile) { return keep[all.tiles[tile].part]; });
   if (floor.tiles.empty()) {
     throw Error(
         fmt::format("no part of the floor is as large as a box of {:g}: take a smaller --floor, or the "
@@ -172,8 +173,8 @@ std::vector<ViewCell> placeOnFloor(const Scene& scene, const FreeCellsArguments&
   });
   const FloorCells& cells = placed.cells;
   const double tile = lattice.voxelSize() * lattice.voxelSize();
-  fmt::print("floor: {:.4g} square units in {} of {}, in {}\n", double(cells.tiles) * tile, placed.parts,
-             counted(placed.all_parts, "part"), voxelsText(lattice));
+  fmt::print("floor: {:.4g} square units in {} of {}, in {}\n", double(cells.floor.tiles.size()) * tile,
+             placed.parts, counted(placed.all_parts, "part"), voxelsText(lattice));
   if (cells.cells.empty()) {
     throw Error("no box fits on the floor" +
                 std::string(cells.in_solid > 0 ? " outside of solids: try --free-side or --reach"
@@ -181,7 +182,7 @@ std::vector<ViewCell> placeOnFloor(const Scene& scene, const FreeCellsArguments&
   }
   fmt::print("{} {:.1f} % of it\n",
              cells.cells.size() == 1 ? "1 box covers" : fmt::format("{} boxes cover", cells.cells.size()),
-             100 * double(cells.covered) / double(cells.tiles));
+             100 * double(cells.covered) / double(cells.floor.tiles.size()));
   if (cells.in_solid > 0) fmt::print("{} more are inside of solids\n", cells.in_solid);
   if (cells.inset > 0) {
     fmt::print("{} of them are smaller, to keep clear of triangles (--margin)\n", cells.inset);

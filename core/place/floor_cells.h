@@ -32,8 +32,8 @@ struct FloorCellOptions {
 
 struct FloorCells {
   std::vector<ViewCell> cells;
-  uint64_t tiles = 0;     ///< of the floor
-  uint64_t covered = 0;   ///< of them: the eye of who stands on its middle is in a cell
+  Floor floor;            ///< without what is in solids by free_side
+  uint64_t covered = 0;   ///< tiles of it: the eye of who stands on its middle is in a cell
   uint64_t inset = 0;     ///< cells that are smaller, for the margin
   uint64_t in_solid = 0;  ///< cells that were left out for free_side
 };
@@ -42,11 +42,12 @@ struct FloorCells {
 FloorOptions floorOptions(const Lattice& lattice, const FloorCellOptions& options);
 
 /// View cells where one walks: boxes that stand on the floor, up to head, each over tiles that are neighbours
-/// and without a gap, not higher under one place than `step` above another, so that it holds the eye of who
-/// stands anywhere under it. Seen from above they do not overlap. The largest comes first, then the largest
-/// of what is left, cut around what stands on the floor, down to `least`. Made of voxels that no triangle
-/// meets, with their sides in by the margin where triangles are near, they hold no triangle, no part of
-/// anything solid, and are over no hole.
+/// and without a gap, and so level that it holds the eye of who stands anywhere under it: it stands on the
+/// highest of them, at most half the eye's height above the lowest. The first is the one that covers most of
+/// the floor, the next the one that covers most of what is left, and so on, cut around what stands on the
+/// floor down to `least`, as long as one covers more than a square of that size. They meet or overlap, so
+/// that they are few. Made of voxels that no triangle meets, with their sides in by the margin where
+/// triangles are near, they hold no triangle, no part of anything solid, and are over no hole.
 ///
 /// Named floor-1, floor-2, ... by height, then z, then x. floor: of this scene's voxels on this lattice,
 /// found with floorOptions. bvh is of this scene. The same on any number of threads. Throws Error (exit code

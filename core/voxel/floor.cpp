@@ -182,11 +182,11 @@ uint32_t tileBelow(const Floor& floor, const VoxelSpace& space, const glm::ivec3
   return tileAt(floor, at.x, at.z, at.y + 1, at.y + 1);
 }
 
-Floor partsOf(const Floor& floor, const std::vector<bool>& keep) {
+Floor tilesOf(const Floor& floor, const std::function<bool(uint32_t tile)>& keep) {
   Floor kept;
   std::vector<uint32_t> place(floor.tiles.size(), FloorTile::kNoTile);
-  for (size_t i = 0; i < floor.tiles.size(); ++i) {
-    if (!keep[floor.tiles[i].part]) continue;
+  for (uint32_t i = 0; i < floor.tiles.size(); ++i) {
+    if (!keep(i)) continue;
     place[i] = uint32_t(kept.tiles.size());
     kept.tiles.push_back(floor.tiles[i]);
   }

@@ -45,7 +45,7 @@ Floor findFloor(const VoxelSpace& space, const FloorOptions& options);
 /// The tile that one who falls from a free voxel comes to stand on; kNoTile: none.
 uint32_t tileBelow(const Floor& floor, const VoxelSpace& space, const glm::ivec3& voxel);
 
-/// Only the tiles of the parts for which keep[part] is true.
-Floor partsOf(const Floor& floor, const std::vector<bool>& keep);
+/// Only the tiles, by their place in the floor, for which `keep` is true.
+Floor tilesOf(const Floor& floor, const std::function<bool(uint32_t tile)>& keep);
 
 }  // namespace sightline
