@@ -15,6 +15,7 @@
 #include "core/pvs/pvs_sections.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/scene/median_edge.h"
+#include "core/voxel/voxel_file.h"
 
 namespace sightline {
 namespace {
@@ -161,9 +162,31 @@ void showPvs(const std::filesystem::path& file) {
   std::fputs(("\n" + cellTable(cells, pvs.triangle_count)).c_str(), stdout);
 }
 
+void showVoxels(const std::filesystem::path& file) {
+  const VoxelFile voxels = loadVoxels(file);
+  const VoxelHead& head = voxels.head;
+  row("voxels", fmt::format("{}, format version {}", file.string(), kVoxelVersion));
+  row("scene", fmt::format("{} triangles, hash {}", head.triangle_count, hashText(head.scene_hash)));
+  if (head.offset != glm::dvec3(0.0)) row("offset", farPoint(head.offset) + ", taken off coordinates");
+  row("voxel", fmt::format("{:g}", head.lattice.voxelSize()));
+  const VoxelBox box = boxOf(voxels.levels.front());
+  const double size = head.lattice.voxelSize();
+  row("bounds", farPoint(glm::dvec3(box.low) * size + head.offset) + " to " +
+                    farPoint(glm::dvec3(box.high + 1) * size + head.offset));
+  row("triangles", head.has_triangles ? "ids in each block" : "no ids");
+  for (size_t level = 0; level < voxels.levels.size(); ++level) {
+    const VoxelGrid& grid = voxels.levels[level];
+    row(level == 0 ? "levels" : "",
+        fmt::format("{}: {} voxels of {:g} in {}", level, grid.count(), grid.lattice.voxelSize(),
+                    counted(grid.blocks.size(), "block")));
+  }
+}
+
 void runInfo(const std::filesystem::path& file, const SceneLoadOptions& options) {
   if (isPvs(file)) {
     showPvs(file);
+  } else if (isVoxelFile(file)) {
+    showVoxels(file);
   } else if (lowerExtension(file) == ".json") {
     showCells(file);
   } else {
@@ -174,10 +197,12 @@ void runInfo(const std::filesystem::path& file, const SceneLoadOptions& options)
 }  // namespace
 
 void addInfoCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("info", "Say what a scene, cells or .pvs file holds");
+  CLI::App* command = app.add_subcommand("info", "Say what a scene, cells, .pvs or .slv file holds");
   const auto file = std::make_shared<std::filesystem::path>();
   const auto options = std::make_shared<SceneLoadOptions>();
-  command->add_option("file", *file, "scene, cells file, .pvs or .pvs.part")->required()->type_name("FILE");
+  command->add_option("file", *file, "scene, cells file, .pvs, .pvs.part or .slv")
+      ->required()
+      ->type_name("FILE");
   declareLoading(*command, *options, "drop a scene's broken triangles instead of refusing it");
   command->callback([file, options] { runInfo(*file, *options); });
 }

@@ -25,8 +25,10 @@
 #include "core/io/file_io.h"
 #include "core/place/outside_cells.h"
 #include "core/pvs/cell_summary.h"
+#include "core/pvs/door_state.h"
 #include "core/pvs/missing_bound.h"
 #include "core/pvs/pvs_writer.h"
+#include "core/scene/seen_through.h"
 #include "core/strip/aimed_rays.h"
 #include "core/strip/lost_rays.h"
 #include "core/strip/strip_scene.h"
@@ -86,13 +88,65 @@ PvsFile loadSets(const StripArguments& arguments, const Scene& scene) {
                           arguments.from, pvs.cells.size(), pvs.planned.size()));
 }
 
-PvsFile setsOf(const StripArguments& arguments, Session& session) {
-  if (isSets(arguments.from)) return loadSets(arguments, session.scene());
-  return bakeSets(arguments,
-                  arguments.from == "outside"
-                      ? moved(outsideCells(sceneBounds(session.scene())), session.scene().offset)
-                      : loadCells(arguments.from),
-                  session);
+/// The scene as it stands in the file: what is written is made of that.
+Scene loadWhole(const StripArguments& arguments) {
+  SceneLoadOptions load = arguments.load;
+  load.faces = true;
+  try {
+    return loadScene(arguments.scene, load);
+  } catch (const Error& error) {
+    // Other commands have an option that drops what is broken.
+    const std::string message = error.what();
+    const size_t option = message.find("; --repair");
+    if (option == std::string::npos) throw;
+    throw Error(message.substr(0, option) + "; mend the file first: strip copies it as it stands",
+                error.exitCode());
+  }
+}
+
+/// The scene in one state of the bake's doors, and what traces rays in it.
+struct SceneState {
+  DoorState doors;
+  Session session;
+  TracedScene traced() { return {session.scene(), session.parts().tracer()}; }
+  const char* place() const { return doors == DoorState::kOpen ? " with the doors open" : ""; }
+};
+
+/// With the doors closed, and open where the bake has any. see_through, doors: of the bake, by the ids of
+/// this scene.
+std::vector<SceneState> statesOf(const StripArguments& arguments, Scene scene,
+                                 const std::vector<NamedTriangles>& see_through,
+                                 const std::vector<NamedTriangles>& doors) {
+  scene = seenThrough(std::move(scene), see_through);
+  std::optional<Scene> open;
+  if (!doors.empty()) open = seenThrough(scene, doors);
+  std::vector<SceneState> states;
+  states.push_back({DoorState::kClosed, Session(std::move(scene), sessionOf(arguments))});
+  if (open) states.push_back({DoorState::kOpen, Session(std::move(*open), sessionOf(arguments))});
+  return states;
+}
+
+/// The sets that decide, and the scene in the states that they are of.
+struct Viewed {
+  PvsFile pvs;
+  std::vector<SceneState> states;
+  const Scene& scene() const { return states[0].session.scene(); }
+};
+
+Viewed viewedOf(const StripArguments& arguments, Scene scene) {
+  Viewed viewed;
+  if (isSets(arguments.from)) {
+    viewed.pvs = loadSets(arguments, scene);
+    viewed.states = statesOf(arguments, std::move(scene), viewed.pvs.see_through, viewed.pvs.doors);
+    return viewed;
+  }
+  viewed.states = statesOf(arguments, std::move(scene), {}, {});
+  viewed.pvs = bakeSets(arguments,
+                        arguments.from == "outside"
+                            ? moved(outsideCells(sceneBounds(viewed.scene())), viewed.scene().offset)
+                            : loadCells(arguments.from),
+                        viewed.states[0].session);
+  return viewed;
 }
 
 /// In whichever state the doors of the bake are.
@@ -106,18 +160,24 @@ std::vector<bool> seenOf(const PvsFile& pvs) {
   return seen;
 }
 
+void sayMissing(const CellStats& stats) {
+  if (stats.validation_rays == 0) {
+    fmt::print("; not measured\n");
+    return;
+  }
+  fmt::print("; {} of {} fresh rays meet others first: at most {:.2g} in a million, 95 % confidence\n",
+             stats.missing_rays, shortCount(stats.validation_rays),
+             missingUpperBound(stats.missing_rays, stats.validation_rays) * 1e6);
+}
+
 /// What the bake promises, a line a cell: as far as that goes, nothing that is seen goes.
 void sayPromise(const PvsFile& pvs) {
   for (const CellPvs& cell : pvs.cells) {
-    const CellSummary summary = summarize(cell);
-    fmt::print("{}: sees {} triangles", cell.cell.name, summary.pvs_size);
-    if (cell.stats.validation_rays == 0) {
-      fmt::print("; not measured\n");
-    } else {
-      fmt::print("; {} of {} fresh rays meet others first: at most {:.2g} in a million, 95 % confidence\n",
-                 cell.stats.missing_rays, shortCount(cell.stats.validation_rays),
-                 summary.missingBound() * 1e6);
-    }
+    fmt::print("{}: sees {} triangles", cell.cell.name, cell.triangles.size());
+    sayMissing(cell.stats);
+    if (!cell.open) continue;
+    fmt::print("{}: with the doors open {} more", cell.cell.name, cell.open->triangles.size());
+    sayMissing(cell.open->stats);
   }
 }
 
@@ -143,13 +203,18 @@ class TraceStatus {
   RayProgress of(size_t cell) {
     return [this, cell](uint64_t rays) {
       status_.show([&] {
-        return fmt::format("{}: cell {} of {}, {} rays", what_, cell + 1, cells_, shortCount(rays));
+        return fmt::format("{}: cell {} of {}, {} rays{}", what_, cell + 1, cells_, shortCount(rays),
+                           so_far_);
       });
       return !stopped();
     };
   }
+  /// What the cells before gave, for the end of the line.
+  void say(std::string so_far) { so_far_ = std::move(so_far); }
   bool stopped() const { return stop_.exitCode() != 0; }
-  /// Ends the line. Throws ExitCode if it was stopped.
+  /// Takes the line away.
+  void wipe() { status_.end(); }
+  /// The same. Throws ExitCode if it was stopped.
   void end() {
     status_.end();
     if (stopped()) throw ExitCode{stop_.exitCode()};
@@ -158,22 +223,26 @@ class TraceStatus {
  private:
   const char* what_;
   size_t cells_;
+  std::string so_far_;
   StopSignal stop_;
   StatusLine status_;
 };
 
 /// What --rays see, too.
-void addSeen(const StripArguments& arguments, const PvsFile& pvs, Session& session, std::vector<bool>& seen) {
+void addSeen(const StripArguments& arguments, Viewed& viewed, std::vector<bool>& seen) {
   if (arguments.rays == 0) return;
-  TraceStatus status("rays", pvs.cells.size());
-  uint64_t added = 0;
-  for (uint32_t i = 0; i < pvs.cells.size() && !status.stopped(); ++i) {
-    added += markSeen({session.scene(), session.parts().tracer()}, pvs.cells[i].cell, i,
-                      arguments.params.seed, arguments.rays, seen, status.of(i));
+  const std::vector<CellPvs>& cells = viewed.pvs.cells;
+  for (SceneState& state : viewed.states) {
+    TraceStatus status("rays", cells.size());
+    uint64_t added = 0;
+    for (uint32_t i = 0; i < cells.size() && !status.stopped(); ++i) {
+      added += markSeen(state.traced(), cells[i].cell, i, arguments.params.seed, arguments.rays, seen,
+                        status.of(i));
+    }
+    status.end();
+    fmt::print("rays: {} from each cell{} meet {} that the sets lack\n", shortCount(arguments.rays),
+               state.place(), counted(added, "triangle"));
   }
-  status.end();
-  fmt::print("rays: {} from each cell meet {} that the sets lack\n", shortCount(arguments.rays),
-             counted(added, "triangle"));
 }
 
 uint64_t countOf(const std::vector<bool>& marked) {
@@ -182,20 +251,21 @@ uint64_t countOf(const std::vector<bool>& marked) {
 
 /// What stays: what is seen and what borders on it, also by rays that are aimed at what else would go, again
 /// and again until they find nothing.
-std::vector<bool> keptOf(const StripArguments& arguments, const PvsFile& pvs, Session& session,
-                         std::vector<bool> seen) {
-  const auto keep = [&] { return arguments.tight ? seen : withNeighbours(session.scene(), seen); };
+std::vector<bool> keptOf(const StripArguments& arguments, Viewed& viewed, std::vector<bool> seen) {
+  const std::vector<CellPvs>& cells = viewed.pvs.cells;
+  const auto keep = [&] { return arguments.tight ? seen : withNeighbours(viewed.scene(), seen); };
   std::vector<bool> kept = keep();
   const uint64_t before = countOf(seen);
   uint64_t last = arguments.aimed > 0 ? 1 : 0;
   AimedRays aimed{.seed = arguments.params.seed, .each = arguments.aimed};
-  TraceStatus status("aimed rays", pvs.cells.size());
+  TraceStatus status("aimed rays", cells.size());
   for (; last > 0 && aimed.round < kMostRounds && !status.stopped(); ++aimed.round) {
     last = 0;
-    for (uint32_t i = 0; i < pvs.cells.size() && !status.stopped(); ++i) {
-      aimed.cell_index = i;
-      last += markAimed({session.scene(), session.parts().tracer()}, pvs.cells[i].cell, aimed, kept, seen,
-                        status.of(i));
+    for (SceneState& state : viewed.states) {
+      for (uint32_t i = 0; i < cells.size() && !status.stopped(); ++i) {
+        aimed.cell_index = i;
+        last += markAimed(state.traced(), cells[i].cell, aimed, kept, seen, status.of(i));
+      }
     }
     kept = keep();
   }
@@ -215,31 +285,63 @@ std::vector<bool> keptOf(const StripArguments& arguments, const PvsFile& pvs, Se
   return kept;
 }
 
-/// Reads the output back, and traces fresh rays in both scenes.
-void check(const StripArguments& arguments, const PvsFile& pvs, Session& session) {
-  if (arguments.check_rays == 0) return;
+/// Objects of the original scene by the ids of what is left of it; without those of which nothing is.
+std::vector<NamedTriangles> leftOf(const std::vector<NamedTriangles>& objects,
+                                   const std::vector<bool>& kept) {
+  std::vector<NamedTriangles> left;
+  const auto keptUntil = [&](uint32_t id) {
+    return uint32_t(std::count(kept.begin(), kept.begin() + ptrdiff_t(id), true));
+  };
+  for (const NamedTriangles& object : objects) {
+    const uint32_t first = keptUntil(object.first), end = keptUntil(object.first + object.count);
+    if (end > first) left.push_back({object.name, first, end - first});
+  }
+  return left;
+}
+
+/// The output, read back.
+Scene loadStripped(const StripArguments& arguments, const Scene& original, const StripReport& report) {
   SceneLoadOptions load = arguments.load;
-  load.offset = session.scene().offset;
-  Session stripped(loadScene(arguments.out, load), sessionOf(arguments));
-  TraceStatus status("check", pvs.cells.size());
-  uint64_t rays = 0;
-  LostRays sum;
-  for (uint32_t i = 0; i < pvs.cells.size() && !status.stopped(); ++i) {
-    uint32_t of_cell = arguments.check_rays;
-    const LostRays found = countLostRays({session.scene(), session.parts().tracer()},
-                                         {stripped.scene(), stripped.parts().tracer()}, pvs.cells[i].cell, i,
-                                         arguments.params.seed, of_cell, status.of(i));
-    sum.lost += found.lost;
-    sum.ties += found.ties;
-    rays += of_cell;
+  load.offset = original.offset;
+  Scene scene = loadScene(arguments.out, load);
+  if (scene.triangleCount() == report.triangles) return scene;
+  throw Error(fmt::format("{}: read back, it holds {} triangles, not {}: do not use it",
+                          arguments.out.string(), scene.triangleCount(), report.triangles));
+}
+
+/// Reads the output back, and traces fresh rays in both scenes, in one state of the doors after the other.
+void check(const StripArguments& arguments, Viewed& viewed, const StripReport& report) {
+  if (arguments.check_rays == 0) return;
+  const std::vector<CellPvs>& cells = viewed.pvs.cells;
+  std::vector<SceneState> stripped =
+      statesOf(arguments, loadStripped(arguments, viewed.scene(), report),
+               leftOf(viewed.pvs.see_through, report.kept), leftOf(viewed.pvs.doors, report.kept));
+  // Where nothing of the doors is left, they are away in both of its states.
+  for (SceneState& state : viewed.states) {
+    SceneState& after = state.doors == DoorState::kOpen ? stripped.back() : stripped.front();
+    TraceStatus status("check", cells.size());
+    uint64_t rays = 0;
+    LostRays sum;
+    for (uint32_t i = 0; i < cells.size() && !status.stopped(); ++i) {
+      uint32_t of_cell = arguments.check_rays;
+      const LostRays found = countLostRays(state.traced(), after.traced(), cells[i].cell, i,
+                                           arguments.params.seed, of_cell, status.of(i));
+      sum.lost += found.lost;
+      sum.ties += found.ties;
+      rays += of_cell;
+      status.say(fmt::format("; before: {} of {} meet what went", sum.lost, shortCount(rays)));
+    }
+    status.wipe();
+    fmt::print(
+        "check:{} {} of {} fresh rays meet first what went: at most {:.2g} in a million, 95 % "
+        "confidence\n",
+        state.place(), sum.lost, rays, missingUpperBound(sum.lost, rays) * 1e6);
+    if (sum.ties != 0) {
+      fmt::print("check: {} meet another triangle that is as near, up to rounding\n",
+                 counted(sum.ties, "ray"));
+    }
+    status.end();
   }
-  fmt::print(
-      "check: {} of {} fresh rays meet first what went: at most {:.2g} in a million, 95 % confidence\n",
-      sum.lost, rays, missingUpperBound(sum.lost, rays) * 1e6);
-  if (sum.ties != 0) {
-    fmt::print("check: {} meet another triangle that is as near, up to rounding\n", counted(sum.ties, "ray"));
-  }
-  status.end();
 }
 
 void runStrip(const StripArguments& arguments) {
@@ -251,23 +353,22 @@ void runStrip(const StripArguments& arguments) {
       std::array{arguments.scene, outside ? std::filesystem::path() : std::filesystem::path(arguments.from)});
   requireNew(arguments.out, arguments.strip.overwrite);
   requireStrippable(arguments.scene, arguments.out);
-  SceneLoadOptions load = arguments.load;
-  load.faces = true;
-  Session session(loadScene(arguments.scene, load), sessionOf(arguments));
-  const Scene& scene = session.scene();
-  fmt::print("{}: {} triangles, {}\n", arguments.scene.string(), scene.triangleCount(),
-             counted(scene.objects.size(), "object"));
-  for (const std::string& warning : scene.warnings) fmt::print("warning: {}\n", warning);
-  const PvsFile pvs = setsOf(arguments, session);
-  sayPromise(pvs);
-  std::vector<bool> seen = seenOf(pvs);
-  addSeen(arguments, pvs, session, seen);
-  seen = keptOf(arguments, pvs, session, std::move(seen));
+  OutputFile probe(arguments.out);  // fail before the work, not after it
+  Scene loaded = loadWhole(arguments);
+  fmt::print("{}: {} triangles, {}\n", arguments.scene.string(), loaded.triangleCount(),
+             counted(loaded.objects.size(), "object"));
+  for (const std::string& warning : loaded.warnings) fmt::print("warning: {}\n", warning);
+  Viewed viewed = viewedOf(arguments, std::move(loaded));
+  sayPromise(viewed.pvs);
+  std::vector<bool> seen = seenOf(viewed.pvs);
+  addSeen(arguments, viewed, seen);
+  seen = keptOf(arguments, viewed, std::move(seen));
   StripOptions options = arguments.strip;
   options.ignored_extensions = arguments.load.ignored_extensions;
   options.allow_external = arguments.load.allow_external;
-  sayResult(arguments, scene, stripScene(scene, arguments.scene, seen, options, arguments.out));
-  check(arguments, pvs, session);
+  const StripReport report = stripScene(viewed.scene(), arguments.scene, seen, options, arguments.out);
+  sayResult(arguments, viewed.scene(), report);
+  check(arguments, viewed, report);
 }
 
 constexpr const char* kStripFooter =

@@ -4,6 +4,7 @@
 #include <png.h>
 #include <webp/decode.h>
 
+#include <algorithm>
 #include <cstring>
 #include <string_view>
 
@@ -31,6 +32,19 @@ void checkSize(uint64_t width, uint64_t height, const std::string& place) {
                                  height, kMostTexelsASide, kMostTexels));
 }
 
+/// A few bytes can claim any size, and decoding takes up to ten bytes a texel. An image of more than
+/// kFreeTexels needs a byte for so many of them: every PNG of four bytes a texel has that, for deflate packs
+/// a thousandfold at best.
+constexpr uint64_t kTexelsAByte = 256;
+constexpr uint64_t kFreeTexels = uint64_t(1) << 24;
+
+/// Before any room is taken. bytes: of the image's file.
+void checkBytes(const AlphaImage& image, size_t bytes, const std::string& place) {
+  if (uint64_t(image.width) * image.height <= std::max(kFreeTexels, kTexelsAByte * bytes)) return;
+  failOnImage(place, fmt::format("claims {} x {} texels in {} bytes, expected at most {} in each",
+                                 image.width, image.height, bytes, kTexelsAByte));
+}
+
 /// Fourth bytes of texels of four.
 std::vector<uint16_t> alphaOf(const std::vector<uint8_t>& rgba) {
   std::vector<uint16_t> alpha(rgba.size() / 4);
@@ -56,6 +70,7 @@ AlphaImage readPng(std::span<const uint8_t> bytes, const std::string& place) {
   checkSize(image.width, image.height, place);
   AlphaImage result{image.width, image.height, {}};
   if ((image.format & PNG_FORMAT_FLAG_ALPHA) == 0) return result;
+  checkBytes(result, bytes.size(), place);
   const size_t texels = size_t(image.width) * image.height;
   const bool wide = (image.format & PNG_FORMAT_FLAG_LINEAR) != 0;  // 16 bits
   std::vector<uint8_t> narrow_rgba(wide ? 0 : texels * 4);
@@ -83,6 +98,7 @@ AlphaImage readWebp(std::span<const uint8_t> bytes, const std::string& place) {
   checkSize(uint64_t(features.width), uint64_t(features.height), place);
   AlphaImage result{uint32_t(features.width), uint32_t(features.height), {}};
   if (features.has_alpha == 0) return result;
+  checkBytes(result, bytes.size(), place);
   std::vector<uint8_t> rgba(size_t(result.width) * result.height * 4);
   if (WebPDecodeRGBAInto(bytes.data(), bytes.size(), rgba.data(), rgba.size(), features.width * 4) ==
       nullptr) {

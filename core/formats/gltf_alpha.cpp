@@ -13,12 +13,21 @@ namespace {
 
 constexpr double kDegreesARadian = 57.295779513082320877;
 constexpr const char* kRemedy = "mend the file, or take its masks as opaque: --opaque-masks";
+/// A small file may name a picture any number of times, with cutoffs of its own. What that may cost is a
+/// number of texels for each byte of it and its pictures; some are free, for pictures of one colour.
+constexpr uint64_t kTexelsAByteOfAll = 4096;
+constexpr uint64_t kFreeTexelsOfAll = uint64_t(1) << 28;
 
 }  // namespace
 
 GltfAlpha::GltfAlpha(const GltfDocument& document, GltfData& data, const std::string& file,
-                     const SceneLoadOptions& options, Surfaces& surfaces)
-    : document_(document), data_(data), file_(file), options_(options), surfaces_(surfaces) {}
+                     uint64_t file_bytes, const SceneLoadOptions& options, Surfaces& surfaces)
+    : document_(document),
+      data_(data),
+      file_(file),
+      file_bytes_(file_bytes),
+      options_(options),
+      surfaces_(surfaces) {}
 
 const GltfSurface& GltfAlpha::surface(size_t mesh, size_t primitive) {
   const auto [entry, is_new] = of_primitives_.try_emplace({mesh, primitive});
@@ -41,33 +50,49 @@ std::optional<uint32_t> GltfAlpha::mask(const GltfMaterial& material) {
                             material.place, material.cutoff, kRemedy));
   }
   const auto holds = [&](uint16_t alpha) { return alpha / 65535.0 * material.factor >= material.cutoff; };
-  const AlphaImage* image = material.texture ? &this->image(*material.texture) : nullptr;
-  if (image == nullptr || image->alpha.empty()) {
-    if (holds(65535)) return std::nullopt;
-    if (!nothing_)
-      nothing_ = addMask(surfaces_, 1, 1, {kWrapClamp, kWrapClamp}, [](uint64_t) { return false; });
-    return nothing_;
-  }
-  const glm::uvec2 wraps = material.texture->wraps;
-  const auto [entry, is_new] =
-      masks_.try_emplace({*material.texture->image, material.factor, material.cutoff, wraps.x + 4 * wraps.y});
-  if (is_new && !std::ranges::all_of(image->alpha, holds)) {
-    entry->second = addMask(surfaces_, image->width, image->height, wraps,
-                            [&](uint64_t texel) { return holds(image->alpha[texel]); });
-  }
-  return entry->second;
-}
-
-const AlphaImage& GltfAlpha::image(const GltfAlphaTexture& texture) {
+  if (!material.texture) return holds(65535) ? std::nullopt : hole();
+  const GltfAlphaTexture& texture = *material.texture;
   if (!texture.image) {
     throw Error(fmt::format("{}: {}: has no image that is read: PNG, JPEG or WebP; {}", file_, texture.place,
                             kRemedy));
   }
-  const auto known = images_.find(*texture.image);
-  if (known != images_.end()) return known->second;
-  const GltfImage& source = document_.images[*texture.image];
-  const std::string place = fmt::format("{}: images[{}]", file_, *texture.image);
-  AlphaImage alpha;
+  const glm::uvec2 wraps = texture.wraps;
+  const auto [entry, is_new] =
+      masks_.try_emplace({*texture.image, material.factor, material.cutoff, wraps.x + 4 * wraps.y});
+  if (!is_new) return entry->second;
+  const AlphaImage& image = this->image(*texture.image);
+  if (image.alpha.empty()) {
+    if (!holds(65535)) entry->second = hole();
+    return entry->second;
+  }
+  spend(image.alpha.size());
+  if (!std::ranges::all_of(image.alpha, holds)) {
+    entry->second = addMask(surfaces_, image.width, image.height, wraps,
+                            [&](uint64_t texel) { return holds(image.alpha[texel]); });
+  }
+  return entry->second;
+}
+
+std::optional<uint32_t> GltfAlpha::hole() {
+  if (!nothing_) {
+    nothing_ = addMask(surfaces_, 1, 1, {kWrapClamp, kWrapClamp}, [](uint64_t) { return false; });
+  }
+  return nothing_;
+}
+
+void GltfAlpha::spend(uint64_t texels) {
+  texels_ += texels;
+  if (texels_ <= kFreeTexelsOfAll + kTexelsAByteOfAll * file_bytes_) return;
+  throw Error(fmt::format("{}: the texels of its masks are far too many for {} bytes of pictures; {}", file_,
+                          file_bytes_, kRemedy));
+}
+
+const AlphaImage& GltfAlpha::image(size_t index) {
+  if (last_image_ == index) return image_;
+  last_image_.reset();
+  image_ = {};  // before the next one takes room
+  const GltfImage& source = document_.images[index];
+  const std::string place = fmt::format("{}: images[{}]", file_, index);
   if (source.uri) {
     std::vector<uint8_t> bytes;
     try {
@@ -75,13 +100,15 @@ const AlphaImage& GltfAlpha::image(const GltfAlphaTexture& texture) {
     } catch (const Error& error) {
       throw Error(fmt::format("{}; {}", error.what(), kRemedy));
     }
-    alpha = readAlphaImage(bytes, place);
+    if (uris_.insert(*source.uri).second) file_bytes_ += bytes.size();
+    image_ = readAlphaImage(bytes, place);
   } else if (source.view) {
-    alpha = readAlphaImage(data_.view(*source.view), place);
+    image_ = readAlphaImage(data_.view(*source.view), place);
   } else {
     throw Error(fmt::format("{}: has neither uri nor bufferView; {}", place, kRemedy));
   }
-  return images_.emplace(*texture.image, std::move(alpha)).first->second;
+  last_image_ = index;
+  return image_;
 }
 
 void GltfAlpha::readPlaces(const GltfPrimitive& primitive, const std::string& place, GltfSurface& surface) {

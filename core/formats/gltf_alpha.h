@@ -1,6 +1,7 @@
 #pragma once
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -22,10 +23,11 @@ struct GltfSurface {
 };
 
 /// Makes the surfaces of a glTF document's primitives: of masks, reads the textures, once for all that share
-/// image and cutoff.
+/// image, factor and cutoff. Holds one image at a time.
 class GltfAlpha {
  public:
-  GltfAlpha(const GltfDocument& document, GltfData& data, const std::string& file,
+  /// file_bytes: of the file; pictures that it has far too few bytes for are refused.
+  GltfAlpha(const GltfDocument& document, GltfData& data, const std::string& file, uint64_t file_bytes,
             const SceneLoadOptions& options, Surfaces& surfaces);
 
   /// meshes[mesh].primitives[primitive], which has positions. The same object for each call. Throws Error.
@@ -38,19 +40,27 @@ class GltfAlpha {
  private:
   /// Nothing: the mask holds everywhere.
   std::optional<uint32_t> mask(const GltfMaterial& material);
-  const AlphaImage& image(const GltfAlphaTexture& texture);
+  /// The mask of one hole.
+  std::optional<uint32_t> hole();
+  const AlphaImage& image(size_t index);
+  /// Throws Error when the texels so far are too many for the file.
+  void spend(uint64_t texels);
   void readPlaces(const GltfPrimitive& primitive, const std::string& place, GltfSurface& surface);
 
   const GltfDocument& document_;
   GltfData& data_;
   const std::string& file_;
+  uint64_t file_bytes_;         ///< with those of pictures beside the file, so far
+  std::set<std::string> uris_;  ///< of these
+  uint64_t texels_ = 0;
   const SceneLoadOptions options_;
   Surfaces& surfaces_;
   std::map<std::pair<size_t, size_t>, GltfSurface> of_primitives_;
-  std::map<size_t, AlphaImage> images_;
-  /// By image, what must be below the cutoff (factor and cutoff) and wraps.
+  std::optional<size_t> last_image_;  ///< the one that is held
+  AlphaImage image_;
+  /// By image, factor, cutoff and wraps.
   std::map<std::tuple<size_t, double, double, uint32_t>, std::optional<uint32_t>> masks_;
-  std::optional<uint32_t> nothing_;  ///< the mask of one hole
+  std::optional<uint32_t> nothing_;  ///< that of hole()
 };
 
 }  // namespace sightline

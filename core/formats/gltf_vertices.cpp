@@ -85,7 +85,9 @@ void GltfVertices::checkCount(size_t accessor, size_t positions) const {
 }
 
 void GltfVertices::check(const GltfVertexSource& source) {
-  if (!document_.accessors[source.positions].view) {
+  // All zeros, but for sparse ones; nobody writes all zeros, so the data is where an extension has it.
+  const GltfAccessor& positions = document_.accessors[source.positions];
+  if (!positions.view && !positions.sparse) {
     throw Error(fmt::format("{}: positions without a bufferView", accessorPlace(source.positions)));
   }
   checkElements(source.positions, 3, "positions", "VEC3");

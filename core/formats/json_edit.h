@@ -7,7 +7,7 @@
 #include <vector>
 
 // Changes of single values in the text of a JSON document that leave every other byte as it is. The text must
-// be one that parseJson takes; nothing is checked again.
+// be one that parseJsonWithWords takes; nothing is checked again.
 namespace sightline {
 
 /// A value's place in a text: bytes begin .. end - 1, without blanks around it.

@@ -55,7 +55,7 @@ class GltfLoader {
         world_(world.parent),
         builder_(options, world.offset),
         vertices_(document, tree_, data, name, builder_),
-        alpha_(document, data, name, options, builder_.surfaces()) {
+        alpha_(document, data, name, file_bytes, options, builder_.surfaces()) {
     world_ *= translation(document.center);
     world_[3] -= glm::dvec4(world.offset, 0.0);
   }
@@ -340,7 +340,7 @@ class GltfLoader {
       throw Error(
           fmt::format("{}: accessors[{}]: indices need SCALAR of 5121, 5123 or 5125", name_, accessor));
     }
-    if (!indices.view) {
+    if (!indices.view && !indices.sparse) {
       throw Error(fmt::format("{}: accessors[{}]: indices without a bufferView", name_, accessor));
     }
     GltfReader(document_, data_, accessor, name_);

@@ -5,6 +5,7 @@
 
 #include "core/base/splitmix.h"
 #include "core/cell/cell_frame.h"
+#include "core/shared/triangle.h"
 #include "core/trace/narrow_gap.h"
 
 namespace sightline {
@@ -57,22 +58,33 @@ class LeakSearch {
   }
 
  private:
-  void trace(const std::vector<Ray>& rays) {
+  /// targets: the triangle that each ray is aimed at. Where that is glass that the ray meets, it is the hit.
+  void trace(const std::vector<Ray>& rays, const std::vector<uint32_t>& targets) {
     hits_.resize(rays.size());
     tracer_.traceRays(rays, hits_);
+    if (tracer_.hasGlass()) {
+      for (const SeenThrough& seen : tracer_.traceGlass(rays, hits_)) {
+        if (seen.triangle != targets[seen.ray]) continue;
+        const auto corners = scene_.corners(seen.triangle);
+        hits_[seen.ray] = {intersectTriangle(shearRay(rays[seen.ray]), corners[0], corners[1], corners[2]),
+                           seen.triangle};
+      }
+    }
     leaks_.rays += rays.size() + findPinched(tracer_, scene_, leaks_.width, rays, hits_, pinches_);
   }
 
   std::vector<Suspect> pinchedFrom(size_t first) {
     std::vector<Ray> rays;
     std::vector<size_t> of;
+    std::vector<uint32_t> targets;
     for (size_t i = first; i < std::min(first + kChunk, pvs_.triangles.size()); ++i) {
       const Witness& witness = pvs_.witnesses[i];
       if (witness.stage == kStageContained) continue;
       rays.push_back(rayOf(witness.origin, witness.direction));
       of.push_back(i);
+      targets.push_back(pvs_.triangles[i]);
     }
-    trace(rays);
+    trace(rays, targets);
     std::vector<Suspect> suspects;
     for (size_t k = 0; k < rays.size(); ++k) {
       const uint32_t id = pvs_.triangles[of[k]];
@@ -86,8 +98,12 @@ class LeakSearch {
   /// Drops those that another ray sees with room on its way.
   void acquit(std::vector<Suspect>& suspects, uint32_t attempt) {
     std::vector<Ray> rays;
-    for (const Suspect& suspect : suspects) rays.push_back(tryOf(suspect, attempt));
-    trace(rays);
+    std::vector<uint32_t> targets;
+    for (const Suspect& suspect : suspects) {
+      rays.push_back(tryOf(suspect, attempt));
+      targets.push_back(suspect.triangle);
+    }
+    trace(rays, targets);
     size_t i = 0;
     std::erase_if(suspects, [&](const Suspect& suspect) {
       const size_t k = i++;

@@ -171,8 +171,7 @@ class Planner {
     for (const SceneObject& object : input_.scene.objects) {
       const PrimitivePlan& plan = plans_[object.part->mesh].primitives[object.part->primitive];
       report_.objects_gone += plan.gone ? 1 : 0;
-      report_.triangles +=
-          plan.whole ? object.triangle_count : uint64_t(std::count(plan.kept.begin(), plan.kept.end(), true));
+      for (uint32_t t = 0; t < object.triangle_count; ++t) report_.kept.push_back(plan.whole || plan.kept[t]);
     }
     for (MeshPlan& mesh : plans_) {
       if (!mesh.unshown) continue;

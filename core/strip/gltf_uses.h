@@ -21,7 +21,7 @@ struct MeshPlan {
                          ///< keeps one, since a mesh must have something
 };
 
-/// A plan for each mesh. root: of the document's JSON. Fills in the report's triangles, objects and notes.
+/// A plan for each mesh. root: of the document's JSON. Fills in what the report keeps, its objects and notes.
 std::vector<MeshPlan> planMeshes(const GltfDocument& document, const nlohmann::json& root,
                                  const StripInput& input, StripReport& report);
 

@@ -35,7 +35,7 @@ Stripped stripObj(const StripInput& input);
 Stripped stripPly(const StripInput& input);
 Stripped stripGltf(const StripInput& input);
 
-/// Of OBJ and PLY: which faces stay, by their numbers in the file. Fills in the report's triangles and
+/// Of OBJ and PLY: which faces stay, by their numbers in the file. Fills in what the report keeps, and its
 /// objects.
 std::vector<bool> keptFaces(const StripInput& input, StripReport& report);
 

@@ -46,7 +46,7 @@ class GltfStripper {
         is_glb_(input.bytes.starts_with("glTF")),
         glb_(is_glb_ ? splitGlb(input.bytes, name_) : Glb{input.bytes, {}, {}}),
         text_(trimmedJson(glb_.json)),
-        root_(parseJson(text_, name_)),
+        root_(parseJsonWithWords(text_, name_, words_)),
         document_(readGltfDocument(root_, name_, input.options.ignored_extensions)),
         data_(document_, glb_.bin, input.file, input.options.allow_external),
         edits_(text_),
@@ -332,6 +332,7 @@ class GltfStripper {
   const bool is_glb_;
   const Glb glb_;
   const std::string_view text_;
+  uint64_t words_ = 0;  ///< in the place of numbers: what does not change keeps them
   json root_;
   const GltfDocument document_;
   GltfData data_;

@@ -76,8 +76,7 @@ std::vector<bool> keptFaces(const StripInput& input, StripReport& report) {
       ++report.objects_gone;
     }
   }
-  report.triangles =
-      uint64_t(std::count_if(faces.begin(), faces.end(), [&](uint32_t face) { return kept[face]; }));
+  for (const uint32_t face : faces) report.kept.push_back(kept[face]);
   return kept;
 }
 
@@ -90,6 +89,8 @@ StripReport stripScene(const Scene& scene, const std::filesystem::path& file, co
   }
   const FileBytes bytes = readFile(file);
   Stripped stripped = strip({bytes.view(), file, scene, seen, options, out});
+  std::vector<bool>& kept = stripped.report.kept;
+  stripped.report.triangles = uint64_t(std::count(kept.begin(), kept.end(), true));
   for (size_t i = 0; i + 1 < stripped.files.size(); ++i) {
     const std::filesystem::path& buffer = stripped.files[i].path;
     std::error_code ignored;

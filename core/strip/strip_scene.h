@@ -23,6 +23,7 @@ struct StripOptions {
 /// What became of a scene file.
 struct StripReport {
   uint64_t triangles = 0;     ///< of the scene that is left; a mesh counts in each place that shows it
+  std::vector<bool> kept;     ///< by id: those; the scene that is left has them in this order
   uint64_t objects_gone = 0;  ///< of the scene's: nothing of them is left
   uint64_t bytes_before = 0;  ///< of the file, and of the buffers beside it
   uint64_t bytes = 0;         ///< of the output, and of the buffers that it names

@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kTrianglesATask = 4096;
 
-// Calls visit(id, TriangleRows in blocks) for all triangles, on many threads.
+// Calls visit(id, corners in blocks) for all triangles, on many threads.
 template <typename Visit>
 void visitInBlocks(const Scene& scene, const Lattice& lattice, Visit&& visit) {
   const double blocks_a_unit = std::ldexp(1.0, -lattice.exponent) / kBlockSide;
@@ -22,8 +22,7 @@ void visitInBlocks(const Scene& scene, const Lattice& lattice, Visit&& visit) {
                     [&](const auto& range) {
                       scene.visitTriangles(range.begin(), range.end(),
                                            [&](uint32_t id, const std::array<glm::vec3, 3>& corners) {
-                                             TriangleRows rows(inVoxels(corners, blocks_a_unit));
-                                             visit(id, rows);
+                                             visit(id, inVoxels(corners, blocks_a_unit));
                                            });
                     });
 }
@@ -44,7 +43,8 @@ BlockTriangles binTriangles(const Scene& scene, const Lattice& lattice, const Vo
   BlockTriangles result;
   result.blocks = blocks;
   result.first.assign(size_t(size.x) * size_t(size.y) * size_t(size.z) + 1, 0);
-  visitInBlocks(scene, lattice, [&](uint32_t, TriangleRows& rows) {
+  visitInBlocks(scene, lattice, [&](uint32_t, const auto& corners) {
+    TriangleRows rows(corners);
     rows.visit(blocks, [&](int y, int z, int first, int last) {
       for (int x = first; x <= last; ++x) addTo(result.first[placeOf(x, y, z)], uint64_t{1});
     });
@@ -53,7 +53,8 @@ BlockTriangles binTriangles(const Scene& scene, const Lattice& lattice, const Vo
   for (uint64_t& first : result.first) total += std::exchange(first, total);
   result.ids.resize(total);
   std::vector<uint32_t> filled(result.first.size() - 1, 0);
-  visitInBlocks(scene, lattice, [&](uint32_t id, TriangleRows& rows) {
+  visitInBlocks(scene, lattice, [&](uint32_t id, const auto& corners) {
+    TriangleRows rows(corners);
     rows.visit(blocks, [&](int y, int z, int first, int last) {
       for (int x = first; x <= last; ++x) {
         const size_t place = placeOf(x, y, z);
@@ -71,8 +72,8 @@ BlockTriangles binTriangles(const Scene& scene, const Lattice& lattice, const Vo
 
 std::vector<uint64_t> countPairsOfLayers(const Scene& scene, const Lattice& lattice, const VoxelBox& blocks) {
   std::vector<uint64_t> pairs(size_t(blocks.high.z - blocks.low.z) + 1, 0);
-  visitInBlocks(scene, lattice, [&](uint32_t, const TriangleRows& rows) {
-    const VoxelBox part = overlapOf(blocks, rows.box());
+  visitInBlocks(scene, lattice, [&](uint32_t, const auto& corners) {
+    const VoxelBox part = overlapOf(blocks, voxelsAround(corners));
     if (part.low.x > part.high.x || part.low.y > part.high.y) return;
     const uint64_t in_layer = uint64_t(part.high.x - part.low.x + 1) * uint64_t(part.high.y - part.low.y + 1);
     for (int z = part.low.z; z <= part.high.z; ++z) addTo(pairs[size_t(z - blocks.low.z)], in_layer);

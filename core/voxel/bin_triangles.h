@@ -19,6 +19,10 @@ struct BlockTriangles {
   std::span<const uint32_t> of(size_t block) const {
     return std::span(ids).subspan(first[block], first[block + 1] - first[block]);
   }
+  glm::ivec3 placeOf(size_t block) const {
+    const size_t x = size_t(blocks.high.x - blocks.low.x) + 1, y = size_t(blocks.high.y - blocks.low.y) + 1;
+    return blocks.low + glm::ivec3(int(block % x), int(block / x % y), int(block / (x * y)));
+  }
 };
 
 /// Exactly those with a point in the block's closed cube. Same result on any number of threads.

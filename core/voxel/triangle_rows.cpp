@@ -22,13 +22,49 @@ ExactPoint pointOf(const glm::dvec3& p) {
 
 }  // namespace
 
-TriangleRows::TriangleRows(const std::array<glm::dvec3, 3>& corners) : corners_(corners) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = std::min({corners[0][axis], corners[1][axis], corners[2][axis]});
-    const double high = std::max({corners[0][axis], corners[1][axis], corners[2][axis]});
-    box_.low[axis] = ceiling(low) - 1;  // closed: cube i meets what is at i + 1
-    box_.high[axis] = -ceiling(-high);
+template <int U, int V>
+void TriangleRows::addEdge(int edge, int side) {
+  const glm::dvec3 &p = corners_[size_t(edge)], &q = corners_[size_t((edge + 1) % 3)];
+  HalfSpace half{};
+  half.u = U;
+  half.v = V;
+  half.edge = edge;
+  half.side = side;
+  half.rises[U] = -side * signOfStep(p[V], q[V]);
+  half.rises[V] = side * signOfStep(p[U], q[U]);
+  if (half.rises[U] == 0 || half.rises[V] == 0) return;  // along an axis: the box says the same
+  half.factor[U] = -side * (q[V] - p[V]);
+  half.factor[V] = side * (q[U] - p[U]);
+  const glm::dvec3 size = glm::dvec3(box_.high - box_.low) + 3.0;
+  half.tolerance =
+      kRounding * (std::abs(half.factor[U]) + std::abs(half.factor[V])) * std::max(size[U], size[V]);
+  for (const int axis : {U, V}) {
+    half.corner[axis] = half.rises[axis] > 0;
+    half.rest += half.factor[axis] * (double(half.corner[axis]) - (p[axis] - double(box_.low[axis])));
   }
+  keep(half);
+}
+
+// Seen along the third axis, the triangle is on the inner side of each of its edges; if it is a segment, the
+// square must have a corner on both sides of it.
+template <int U, int V>
+void TriangleRows::addEdges(int orientation) {
+  if (orientation != 0) {
+    for (int edge = 0; edge < 3; ++edge) addEdge<U, V>(edge, orientation);
+    return;
+  }
+  int longest = 0;
+  double length = -1;
+  for (int edge = 0; edge < 3; ++edge) {
+    const glm::dvec3 step = corners_[size_t((edge + 1) % 3)] - corners_[size_t(edge)];
+    const double size = std::abs(step[U]) + std::abs(step[V]);
+    if (size > length) {
+      longest = edge;
+      length = size;
+    }
+  }
+  addEdge<U, V>(longest, 1);
+  addEdge<U, V>(longest, -1);
 }
 
 void TriangleRows::prepare() {
@@ -38,53 +74,10 @@ void TriangleRows::prepare() {
     return orient2d(p[0][u], p[0][v], p[1][u], p[1][v], p[2][u], p[2][v]);
   };
   const glm::ivec3 normal(orientation(1, 2), orientation(2, 0), orientation(0, 1));
-  addEdges(1, 2, normal.x);
-  addEdges(0, 2, -normal.y);
-  addEdges(0, 1, normal.z);
+  addEdges<1, 2>(normal.x);
+  addEdges<0, 2>(-normal.y);
+  addEdges<0, 1>(normal.z);
   addPlane(normal);
-}
-
-// Seen along the third axis, the triangle is on the inner side of each of its edges; if it is a segment, the
-// square must have a corner on both sides of it.
-void TriangleRows::addEdges(int u, int v, int orientation) {
-  if (orientation != 0) {
-    for (int edge = 0; edge < 3; ++edge) addEdge(u, v, edge, orientation);
-    return;
-  }
-  int longest = 0;
-  double length = -1;
-  for (int edge = 0; edge < 3; ++edge) {
-    const glm::dvec3 step = corners_[size_t((edge + 1) % 3)] - corners_[size_t(edge)];
-    const double size = std::abs(step[u]) + std::abs(step[v]);
-    if (size > length) {
-      longest = edge;
-      length = size;
-    }
-  }
-  addEdge(u, v, longest, 1);
-  addEdge(u, v, longest, -1);
-}
-
-void TriangleRows::addEdge(int u, int v, int edge, int side) {
-  const glm::dvec3 &p = corners_[size_t(edge)], &q = corners_[size_t((edge + 1) % 3)];
-  HalfSpace half;
-  half.u = u;
-  half.v = v;
-  half.edge = edge;
-  half.side = side;
-  half.rises[u] = -side * signOfStep(p[v], q[v]);
-  half.rises[v] = side * signOfStep(p[u], q[u]);
-  if (half.rises[u] == 0 || half.rises[v] == 0) return;  // along an axis: the box says the same
-  half.factor[u] = -side * (q[v] - p[v]);
-  half.factor[v] = side * (q[u] - p[u]);
-  const glm::dvec3 size = glm::dvec3(box_.high - box_.low) + 3.0;
-  half.tolerance =
-      kRounding * (std::abs(half.factor[u]) + std::abs(half.factor[v])) * std::max(size[u], size[v]);
-  for (const int axis : {u, v}) {
-    half.corner[axis] = half.rises[axis] > 0;
-    half.rest += half.factor[axis] * (double(half.corner[axis]) - (p[axis] - double(box_.low[axis])));
-  }
-  keep(half);
 }
 
 // The plane has a corner of the cube on both sides of it, or on it.
@@ -95,8 +88,9 @@ void TriangleRows::addPlane(const glm::ivec3& signs) {
   const glm::dvec3 normal = plus - minus, magnitude = glm::abs(plus) + glm::abs(minus);
   const glm::dvec3 size = glm::dvec3(box_.high - box_.low) + 3.0;
   for (const int side : {1, -1}) {
-    HalfSpace half;
+    HalfSpace half{};
     half.side = side;
+    half.u = half.v = -1;
     half.rises = side * signs;
     half.factor = double(side) * normal;
     half.tolerance =
@@ -111,13 +105,13 @@ void TriangleRows::addPlane(const glm::ivec3& signs) {
   }
 }
 
-void TriangleRows::keep(HalfSpace half) {
-  for (int axis = 0; axis < 2; ++axis) {
-    // A factor that rounding has turned says nothing: infinity sends each row to the search.
-    const bool is_sound = half.factor[axis] * half.rises[axis] > 0;
-    half.inverse[axis] = is_sound ? 1 / half.factor[axis] : std::numeric_limits<double>::infinity();
-  }
-  if (half.rises.x == 0) {
+void TriangleRows::keep(HalfSpace& half) {
+  const bool is_along_x = half.rises.x == 0;
+  const double factor = is_along_x ? half.factor.y : half.factor.x;
+  const int rises = is_along_x ? half.rises.y : half.rises.x;
+  // A factor that rounding has turned says nothing: infinity sends each row to the search.
+  half.inverse = factor * rises > 0 ? 1 / factor : std::numeric_limits<double>::infinity();
+  if (is_along_x) {
     yz_[size_t(count_yz_++)] = half;
   } else {
     x_[size_t(count_x_++)] = half;
@@ -136,18 +130,14 @@ bool TriangleRows::holds(const HalfSpace& half, const glm::ivec3& voxel) const {
          0;
 }
 
-// By halves: a half space holds from one voxel of the row on, or up to one.
-void TriangleRows::search(const HalfSpace& half, glm::ivec3 at, int axis, int& low, int& high) const {
+// A half space holds from one voxel of the row on, or up to one.
+void TriangleRows::search(const HalfSpace& half, glm::ivec3 at, int axis, int& low, int& high, int from,
+                          int to) const {
   const bool rises = half.rises[axis] > 0;
-  const auto holdsAt = [&](int place) {
-    at[axis] = place;
-    return holds(half, at);
-  };
-  int from = low,
-      to = high + 1;  // rises: the first that holds is in from .. to; else the first that does not
-  while (from < to) {
+  while (from < to) {  // rises: the first that holds is in from .. to; else the first that does not
     const int middle = from + (to - from) / 2;
-    if (holdsAt(middle) == rises) {
+    at[axis] = middle;
+    if (holds(half, at) == rises) {
       to = middle;
     } else {
       from = middle + 1;

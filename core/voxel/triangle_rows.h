@@ -5,15 +5,26 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "core/voxel/voxel_box.h"
+
 namespace sightline {
 
-/// Voxels from a low to a high one, both with their ends; none where low > high along an axis.
-struct VoxelBox {
-  glm::ivec3 low{0}, high{-1};
-};
+/// The smallest whole number that is not below the value; of one beyond 2^30, some number beyond 2^29.
+inline int ceiling(double value) {
+  const int whole = int(std::clamp(value, -0x1p30, 0x1p30));
+  return whole + (double(whole) < value);
+}
 
-inline VoxelBox overlapOf(const VoxelBox& a, const VoxelBox& b) {
-  return {glm::max(a.low, b.low), glm::min(a.high, b.high)};
+/// The smallest box of voxels that holds all whose closed cubes meet the triangle.
+inline VoxelBox voxelsAround(const std::array<glm::dvec3, 3>& corners) {
+  const glm::dvec3 low = glm::min(corners[0], glm::min(corners[1], corners[2]));
+  const glm::dvec3 high = glm::max(corners[0], glm::max(corners[1], corners[2]));
+  VoxelBox box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = ceiling(low[axis]) - 1;  // closed: cube i meets what is at i + 1
+    box.high[axis] = -ceiling(-high[axis]);
+  }
+  return box;
 }
 
 /// The voxels whose closed cubes a closed triangle has a point in common with, row by row along x: exactly
@@ -30,7 +41,8 @@ inline VoxelBox overlapOf(const VoxelBox& a, const VoxelBox& b) {
 class TriangleRows {
  public:
   /// Corners in voxels, of a magnitude of at most 2^30.
-  explicit TriangleRows(const std::array<glm::dvec3, 3>& corners);
+  explicit TriangleRows(const std::array<glm::dvec3, 3>& corners)
+      : corners_(corners), box_(voxelsAround(corners)) {}
 
   /// The smallest box of voxels that holds them all.
   const VoxelBox& box() const { return box_; }
@@ -63,14 +75,14 @@ class TriangleRows {
   /// What a voxel's corner nearest to the inner side of a plane is asked: factor . (voxel - base) + rest >=
   /// 0, in doubles that are off by `tolerance` at most.
   struct HalfSpace {
-    glm::dvec3 factor{0.0};
-    double rest = 0, tolerance = 0;
-    double inverse[2] = {0, 0};  ///< of factor.x, factor.y
-    glm::ivec3 rises{0};         ///< exact signs of factor
-    glm::ivec3 corner{0};        ///< of the voxel: 0 or 1 along each axis
-    int side = 1;                ///< sign of the orientation that is on the inner side
-    int u = -1, v = -1;          ///< axes of the plane in which the edge is; -1: the triangle's plane
-    int edge = 0;                ///< from this corner of the triangle to the next
+    glm::dvec3 factor;
+    double rest, tolerance;
+    double inverse;     ///< of factor.x, or where that is 0 of factor.y
+    glm::ivec3 rises;   ///< exact signs of factor
+    glm::ivec3 corner;  ///< of the voxel: 0 or 1 along each axis
+    int side;           ///< sign of the orientation that is on the inner side
+    int u, v;           ///< axes of the plane in which the edge is; -1: the triangle's plane
+    int edge;           ///< from this corner of the triangle to the next
   };
 
   /// Whether the box's voxels all meet the triangle: it is within one layer of voxels along two axes.
@@ -79,23 +91,26 @@ class TriangleRows {
     return (size.x == 0) + (size.y == 0) + (size.z == 0) >= 2;
   }
   void prepare();
-  void addEdge(int u, int v, int edge, int side);
-  void addEdges(int u, int v, int orientation);
+  template <int U, int V>
+  void addEdge(int edge, int side);
+  template <int U, int V>
+  void addEdges(int orientation);
   void addPlane(const glm::ivec3& signs);
-  void keep(HalfSpace half);
+  void keep(HalfSpace& half);
   bool holds(const HalfSpace& half, const glm::ivec3& voxel) const;
-  void search(const HalfSpace& half, glm::ivec3 at, int axis, int& low, int& high) const;
+  /// By halves, where the half space begins or ends to hold: in from .. to.
+  void search(const HalfSpace& half, glm::ivec3 at, int axis, int& low, int& high, int from, int to) const;
 
   /// Moves the run's one end to where the half space begins.
   void narrow(const HalfSpace& half, const glm::ivec3& at, int axis, int& low, int& high) const {
     if (low > high) return;
     double rest = half.rest + half.factor.z * double(at.z - box_.low.z);
     if (axis == 0) rest += half.factor.y * double(at.y - box_.low.y);
-    const double inverse = half.inverse[axis];
+    const double inverse = half.inverse;
     const double end = -rest * inverse, reach = half.tolerance * std::abs(inverse);
     const int base = box_.low[axis];
     const double from = double(low - base), to = double(high - base);
-    if (!(reach < 0x1p30)) return search(half, at, axis, low, high);
+    if (!(reach < 0x1p30)) return search(half, at, axis, low, high, low, high + 1);
     if (half.rises[axis] > 0) {
       if (end + reach <= from) return;
       if (end - reach > to) {
@@ -119,18 +134,17 @@ class TriangleRows {
         return;
       }
     }
-    search(half, at, axis, low, high);
-  }
-
-  static int ceiling(double value) {
-    const int whole = int(std::clamp(value, -0x1p30, 0x1p30));
-    return whole + (double(whole) < value);
+    const bool rises = half.rises[axis] > 0;
+    const int first = rises ? ceiling(end - reach) : -ceiling(-(end - reach)) + 1;
+    const int last = rises ? ceiling(end + reach) : -ceiling(-(end + reach)) + 1;
+    search(half, at, axis, low, high, std::max(low, base + first), std::min(high + 1, base + last));
   }
 
   std::array<glm::dvec3, 3> corners_;
   VoxelBox box_;
   bool is_ready_ = false;
   int count_yz_ = 0, count_x_ = 0;
+  // Not set before prepare(): most triangles of fine scenes need none.
   std::array<HalfSpace, 5> yz_;  ///< of edges along x (3, or 2) and of a plane along x (2)
   std::array<HalfSpace, 8> x_;   ///< of edges along z (3) and y (3), and of the plane (2)
 };

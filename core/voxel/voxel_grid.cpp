@@ -1,5 +1,7 @@
 #include "core/voxel/voxel_grid.h"
 
+#include <algorithm>
+
 namespace sightline {
 namespace {
 
@@ -9,6 +11,40 @@ uint64_t keyOf(const glm::ivec3& place) {
 }
 
 }  // namespace
+
+VoxelBox boxOf(const VoxelBlock& block) {
+  VoxelBox box{glm::ivec3(kBlockSide), glm::ivec3(-1)};
+  for (const VoxelBrick& brick : block.bricks) {
+    const glm::ivec3 low(8 * (brick.place & 7), 8 * ((brick.place >> 3) & 7), 8 * (brick.place >> 6));
+    uint64_t all = 0;
+    for (int z = 0; z < 8; ++z) {
+      const uint64_t layer = brick.bits[size_t(z)];
+      if (layer == 0) continue;
+      all |= layer;
+      box.low.z = std::min(box.low.z, low.z + z);
+      box.high.z = std::max(box.high.z, low.z + z);
+    }
+    uint64_t columns = all;
+    for (const int shift : {32, 16, 8}) columns |= columns >> shift;
+    columns &= 0xff;
+    box.low.y = std::min(box.low.y, low.y + std::countr_zero(all) / 8);
+    box.high.y = std::max(box.high.y, low.y + 7 - std::countl_zero(all) / 8);
+    box.low.x = std::min(box.low.x, low.x + std::countr_zero(columns));
+    box.high.x = std::max(box.high.x, low.x + 63 - std::countl_zero(columns));
+  }
+  const glm::ivec3 origin = block.place * kBlockSide;
+  return {origin + box.low, origin + box.high};
+}
+
+VoxelBox boxOf(const VoxelGrid& grid) {
+  if (grid.blocks.empty()) return {};
+  VoxelBox box = boxOf(grid.blocks.front());
+  for (const VoxelBlock& block : grid.blocks) {
+    const VoxelBox part = boxOf(block);
+    box = {glm::min(box.low, part.low), glm::max(box.high, part.high)};
+  }
+  return box;
+}
 
 VoxelLookup::VoxelLookup(const VoxelGrid& grid) : grid_(&grid) {
   places_.reserve(grid.blocks.size());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/voxel/lattice.h"
+#include "core/voxel/voxel_box.h"
 
 namespace sightline {
 
@@ -64,6 +65,11 @@ struct VoxelGrid {
     return sum;
   }
 };
+
+/// The smallest box that holds the block's voxels.
+VoxelBox boxOf(const VoxelBlock& block);
+/// And a grid's.
+VoxelBox boxOf(const VoxelGrid& grid);
 
 /// Finds voxels of a grid, which must stay where it is. For use by many threads at once.
 class VoxelLookup {

@@ -26,29 +26,6 @@ VoxelBox blocksAround(const VoxelGrid& grid) {
   return box;
 }
 
-VoxelBox voxelsAround(const VoxelGrid& grid) {
-  const VoxelBox blocks = blocksAround(grid);
-  if (blocks.low.x > blocks.high.x) return {};
-  VoxelBox box{blocks.high * kBlockSide + (kBlockSide - 1), blocks.low * kBlockSide};
-  for (const VoxelBlock& block : grid.blocks) {
-    for (const VoxelBrick& brick : block.bricks) {
-      const glm::ivec3 low =
-          block.place * kBlockSide +
-          kBrickSide * glm::ivec3(brick.place & 7, (brick.place >> 3) & 7, brick.place >> 6);
-      if (holds(box, low) && holds(box, low + (kBrickSide - 1))) continue;
-      for (int z = 0; z < kBrickSide; ++z) {
-        for (int y = 0; y < kBrickSide; ++y) {
-          const uint64_t row = (brick.bits[size_t(z)] >> (8 * y)) & 0xff;
-          if (row == 0) continue;
-          box.low = glm::min(box.low, low + glm::ivec3(std::countr_zero(row), y, z));
-          box.high = glm::max(box.high, low + glm::ivec3(63 - std::countl_zero(row), y, z));
-        }
-      }
-    }
-  }
-  return box;
-}
-
 glm::ivec3 voxelAt(const Lattice& lattice, const glm::dvec3& place) {
   const double voxels_a_unit = std::ldexp(1.0, -lattice.exponent);
   return glm::ivec3(glm::clamp(glm::floor(place * voxels_a_unit), -0x1p31, 0x1p31 - 1));
@@ -113,7 +90,7 @@ Share VoxelSpace::innerIn(const glm::ivec3& low, int level) const {
 
 SpaceCounts VoxelSpace::counts() const {
   SpaceCounts counts;
-  const uint64_t volume = volumeOf(voxelsAround(*grid_));
+  const uint64_t volume = volumeOf(boxOf(*grid_));
   counts.surface = grid_->count();
   constexpr uint64_t kInBlock = uint64_t(kBlockSide) * kBlockSide * kBlockSide;
   for (const uint32_t inner : inner_) {

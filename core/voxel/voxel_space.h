@@ -67,8 +67,6 @@ inline constexpr uint64_t kMostSpaceBlocks = uint64_t(1) << 28;
 
 /// The box around the grid's blocks, in blocks; none if there are none.
 VoxelBox blocksAround(const VoxelGrid& grid);
-/// The smallest box around the grid's voxels, in voxels.
-VoxelBox voxelsAround(const VoxelGrid& grid);
 
 /// The voxel that holds a place of the scene's space, the higher one if it is on a side. Places out of range
 /// of int32 are moved to its ends.

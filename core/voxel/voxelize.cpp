@@ -20,8 +20,9 @@ VoxelBox blocksOf(const Scene& scene, const Lattice& lattice) {
   return {glm::ivec3(glm::ceil(low)) - 1, glm::ivec3(glm::floor(high))};
 }
 
-VoxelBlock voxelizeBlock(const Scene& scene, const VoxelizeOptions& options, const glm::ivec3& place,
-                         std::span<const uint32_t> triangles, BlockBits& bits) {
+std::vector<VoxelBrick> makeBricks(const Scene& scene, const VoxelizeOptions& options,
+                                   const glm::ivec3& place, std::span<const uint32_t> triangles,
+                                   BlockBits& bits) {
   bits.clear();
   const glm::ivec3 low = place * kBlockSide;
   const VoxelBox block{low, low + (kBlockSide - 1)};
@@ -37,11 +38,7 @@ VoxelBlock voxelizeBlock(const Scene& scene, const VoxelizeOptions& options, con
       SeparatingRows(corners, options.separation).visit(block, insert);
     }
   }
-  VoxelBlock result;
-  result.place = place;
-  result.bricks = bits.bricks();
-  addAttributes(scene, triangles, options.attributes, options.lattice, result);
-  return result;
+  return bits.bricks();
 }
 
 // The layers of blocks from box.low.z on that may be worked on at once.
@@ -61,6 +58,20 @@ int layersFrom(const VoxelBox& box, const std::vector<uint64_t>& pairs, int firs
 
 void voxelize(const Scene& scene, const VoxelizeOptions& options,
               const std::function<void(VoxelBlock&&)>& take) {
+  const auto make = [&](const BlockTriangles& binned, std::span<const size_t> filled,
+                        std::span<VoxelBlock> blocks) {
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, filled.size(), 1), [&](const auto& range) {
+      BlockBits bits;
+      for (size_t i = range.begin(); i < range.end(); ++i) {
+        blocks[i].bricks = makeBricks(scene, options, blocks[i].place, binned.of(filled[i]), bits);
+      }
+    });
+  };
+  voxelizeBy(make, kBlocksATime, scene, options, take);
+}
+
+void voxelizeBy(const MakeBricks& make, size_t blocks_a_time, const Scene& scene,
+                const VoxelizeOptions& options, const std::function<void(VoxelBlock&&)>& take) {
   requireFits(options.lattice, sceneBounds(scene));
   const VoxelBox box = blocksOf(scene, options.lattice);
   const glm::ivec3 size = box.high - box.low + 1;
@@ -77,19 +88,18 @@ void voxelize(const Scene& scene, const VoxelizeOptions& options,
     for (size_t i = 0; i + 1 < binned.first.size(); ++i) {
       if (binned.first[i] != binned.first[i + 1]) filled.push_back(i);
     }
-    std::vector<VoxelBlock> blocks(std::min(kBlocksATime, filled.size()));
-    for (size_t begin = 0; begin < filled.size(); begin += kBlocksATime) {
+    for (size_t begin = 0; begin < filled.size(); begin += blocks_a_time) {
       if (options.stop != nullptr && *options.stop) throw Interrupted();
-      const size_t count = std::min(kBlocksATime, filled.size() - begin);
+      const size_t count = std::min(blocks_a_time, filled.size() - begin);
+      const auto now = std::span(filled).subspan(begin, count);
+      std::vector<VoxelBlock> blocks(count);
+      for (size_t i = 0; i < count; ++i) blocks[i].place = binned.placeOf(now[i]);
+      make(binned, now, blocks);
       tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1), [&](const auto& range) {
-        BlockBits bits;
         for (size_t i = range.begin(); i < range.end(); ++i) {
-          const size_t at = filled[begin + i];
-          const glm::ivec3 place =
-              part.low + glm::ivec3(int(at % size_t(size.x)), int(at / size_t(size.x) % size_t(size.y)),
-                                    int(at / (size_t(size.x) * size_t(size.y))));
-          blocks[i] = voxelizeBlock(scene, options, place, binned.of(at), bits);
-          if (options.with_triangles) blocks[i].triangles.assign(binned.of(at).begin(), binned.of(at).end());
+          const auto triangles = binned.of(now[i]);
+          addAttributes(scene, triangles, options.attributes, options.lattice, blocks[i]);
+          if (options.with_triangles) blocks[i].triangles.assign(triangles.begin(), triangles.end());
         }
       });
       for (size_t i = 0; i < count; ++i) {

@@ -2,7 +2,9 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <span>
 
+#include "core/voxel/bin_triangles.h"
 #include "core/voxel/separating_rows.h"
 #include "core/voxel/voxel_attributes.h"
 #include "core/voxel/voxel_grid.h"
@@ -34,5 +36,14 @@ void voxelize(const Scene& scene, const VoxelizeOptions& options,
 
 /// The same, in memory.
 VoxelGrid voxelize(const Scene& scene, const VoxelizeOptions& options);
+
+/// Makes blocks' bricks (VoxelBlock::place is given) from the triangles of binned.of(filled[i]), blocks[i]
+/// being block filled[i]. filled: ascending, with a triangle each.
+using MakeBricks = std::function<void(const BlockTriangles& binned, std::span<const size_t> filled,
+                                      std::span<VoxelBlock> blocks)>;
+
+/// voxelize with bricks from whoever makes the right ones, for so many blocks at a time.
+void voxelizeBy(const MakeBricks& make, size_t blocks_a_time, const Scene& scene,
+                const VoxelizeOptions& options, const std::function<void(VoxelBlock&&)>& take);
 
 }  // namespace sightline

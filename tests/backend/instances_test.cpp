@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cstring>
 
 #include "core/scene/check_scene.h"
 #include "core/scene/contained.h"

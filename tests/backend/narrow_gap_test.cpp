@@ -11,6 +11,7 @@
 #include "core/device/registry/make_device.h"
 #include "core/gvs/find_leaks.h"
 #include "core/scene/find_objects.h"
+#include "core/scene/scene_tree.h"
 #include "tests/support/bake_scene.h"
 #include "tests/support/leaky_room.h"
 #include "tests/support/make_cell.h"
@@ -251,6 +252,43 @@ TEST(Leaks, AreTheTrianglesBehindGaps) {
   const Bvh closed_bvh = buildBvh(closed.scene.positions, closed.scene.triangles);
   const auto closed_device = makeDevice("cpu", closed.scene, closed_bvh);
   EXPECT_EQ(findLeaks(*closed_device, closed.scene, tight, leakWidth(tight.cell)).triangles, 0u);
+}
+
+/// Glass behind a gap is a leak as well, also where what ends the ray is; glass in the room, and what is seen
+/// past it, is none.
+TEST(Leaks, CountGlass) {
+  LeakyRoom room(0.0002f, 16);
+  const auto isGlass = [](uint32_t id) { return id % 3 == 0; };
+  Scene& scene = room.scene;
+  scene.surfaces.words.assign(scene.triangleCount(), 0);
+  for (uint32_t id = room.mosaic; id < scene.triangleCount(); ++id) {
+    scene.surfaces.words[id] = isGlass(id) ? kSurfaceGlass : 0u;
+  }
+  // A pane before a wall inside.
+  SceneOfBoxes panes;
+  panes.addRectangle({-2.9f, 0.1f, 2.5f}, {5.8f, 0, 0}, {0, 2.8f, 0});
+  const Scene pane = panes.finish();
+  const auto first = uint32_t(scene.positions.size());
+  const uint32_t pane_id = scene.triangleCount();
+  scene.positions.insert(scene.positions.end(), pane.positions.begin(), pane.positions.end());
+  for (const glm::uvec3& t : pane.triangles) scene.triangles.push_back(t + first);
+  scene.surfaces.words.resize(scene.triangleCount(), kSurfaceGlass);
+  scene.objects.back().triangle_count += 2;
+  const Bvh bvh = buildSceneTree(scene);
+  for (const char* driver : {"cpu", "opencl"}) {
+    const auto device = makeDevice(driver, scene, bvh);
+    const CellPvs pvs = bakeCell(*device, scene, makeCell({0, 1.5, 0}, {0.5, 0.5, 0.5}), 0, quickParams());
+    uint64_t behind = 0, glass = 0;
+    for (const uint32_t id : pvs.triangles) {
+      behind += id >= room.mosaic && id < pane_id ? 1 : 0;
+      glass += id >= room.mosaic && id < pane_id && isGlass(id) ? 1 : 0;
+    }
+    EXPECT_TRUE(std::ranges::binary_search(pvs.triangles, pane_id));
+    ASSERT_GT(glass, 3u) << driver;
+    const Leaks leaks = findLeaks(*device, scene, pvs, leakWidth(pvs.cell));
+    EXPECT_GE(leaks.triangles, behind) << driver;
+    EXPECT_LE(leaks.triangles, behind + 4) << driver << ": floor and ceiling reach past the walls, too";
+  }
 }
 
 }  // namespace

@@ -97,6 +97,32 @@ TEST(StripCommand, KeepsWhatOpenDoorsShow) {
             {": 24 of 24 triangles"});  // the core as a door shows its other sides
 }
 
+/// Rays of strip's own look at both states of the doors, and through what hides nothing.
+TEST(StripCommand, OwnRaysSeeWhatOpenDoorsShow) {
+  const BoxInBox files;
+  const std::string scene = files / "a.glb", pvs = files / "a.pvs";
+  // Sets of hardly anything: what the rays find decides.
+  const std::string few =
+      " --device cpu --n-rand 1 --max-rays 1 --validation-rays 0 --check-rays 20k --tight";
+  const std::string bake = "bake " + scene + " --cells " + (files / "cells.json") + " -o " + pvs +
+                           " --overwrite --device cpu --n-rand 1 --max-rays 1 --validation-rays 0";
+  const std::string strip =
+      "strip " + scene + " -o " + (files / "b.glb") + " --overwrite --from " + pvs + few;
+  expectRun(bake + " --doors core", 0, {});
+  expectRun(strip + " --aimed 0 --rays 50k", 0,
+            {"gap: with the doors open ", "rays: 50.0k from each cell with the doors open meet ",
+             ": 24 of 24 triangles", "check: with the doors open 0 of 40000 fresh rays"});
+  expectRun(strip, 0, {": 24 of 24 triangles"});  // by aimed rays
+  const test::ProgramRun lost = expectRun(strip + " --aimed 0", 0, {"check: with the doors open "});
+  EXPECT_EQ(lost.output.find("check: with the doors open 0 of"), std::string::npos) << lost.output;
+  expectRun(bake + " --see-through core", 0, {});
+  const test::ProgramRun through =
+      expectRun(strip + " --aimed 0 --rays 50k", 0, {": 24 of 24 triangles", "check: 0 of 40000 fresh rays"});
+  EXPECT_EQ(through.output.find("doors"), std::string::npos) << through.output;
+  expectRun(bake, 0, {});
+  expectRun(strip + " --aimed 0 --rays 50k", 0, {": 16 of 24 triangles"});  // closed: two sides of the core
+}
+
 TEST(StripCommand, SaysWhatIsWrong) {
   const BoxInBox files;
   const std::string scene = files / "a.glb";
@@ -107,6 +133,15 @@ TEST(StripCommand, SaysWhatIsWrong) {
   expectRun("strip " + scene + " -o " + (files / "b.glb") + " --from no.json" + kQuick, 1,
             {"no.json: cannot open"});
   expectRun("strip " + scene + " -o -" + kQuick, 2, {"standard output"});
+  const test::ProgramRun nowhere =
+      expectRun("strip " + scene + " -o " + (files / "no/b.glb") + kQuick, 1, {"no/b.glb: cannot create"});
+  EXPECT_EQ(nowhere.output.find("triangles"), std::string::npos)
+      << "refused before the work: " << nowhere.output;
+  std::ofstream(files / "torn.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 4\n";
+  const test::ProgramRun torn =
+      expectRun("strip " + (files / "torn.obj") + " -o " + (files / "c.obj") + kQuick, 1,
+                {"torn.obj:5: vertex index 4 is out of range 1..3; mend the file first"});
+  EXPECT_EQ(torn.output.find("--repair"), std::string::npos) << torn.output;
   EXPECT_FALSE(std::filesystem::exists(files / "b.glb"));
 }
 

@@ -21,10 +21,20 @@ std::string pngOf(uint32_t width, uint32_t height, const std::vector<uint8_t>& a
   image.width = width;
   image.height = height;
   image.format = PNG_FORMAT_RGBA;
-  std::string bytes(100'000, '\0');
-  png_alloc_size_t size = bytes.size();
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::string bytes(size, '\0');
   EXPECT_NE(png_image_write_to_memory(&image, bytes.data(), &size, 0, rgba.data(), 0, nullptr), 0);
   return bytes.substr(0, size);
+}
+
+/// The checksum of a PNG's chunk (ISO 3309).
+uint32_t pngSum(const std::string& bytes) {
+  uint32_t sum = ~0u;
+  for (const char byte : bytes) {
+    sum ^= uint8_t(byte);
+    for (int bit = 0; bit < 8; ++bit) sum = (sum >> 1) ^ (0xedb88320u & (0u - (sum & 1u)));
+  }
+  return ~sum;
 }
 
 std::string webpOf(uint32_t width, uint32_t height, const std::vector<uint8_t>& alpha) {
@@ -238,6 +248,41 @@ TEST(GltfAlpha, SaysWhatIsWrongWithAMask) {
   file.document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
       file.addAccessor(file.addView(bytesOf(far)), 5126, 4, "VEC2");
   expect(file, "texture coordinates of the triangle");
+}
+
+/// A file of a few bytes must not cost gigabytes: neither by what an image claims to be ...
+TEST(GltfAlpha, RefusesSizesThatTheBytesCannotStandFor) {
+  const std::string png = pngOf(3, 2, kAlpha);
+  const std::string claim("\x00\x00\x40\x00\x00\x00\x40\x00", 8);  // 2^14 by 2^14
+  std::string large = png;
+  large.replace(16, 8, claim);
+  const uint32_t sum = pngSum(large.substr(12, 17));  // of IHDR
+  for (int i = 0; i < 4; ++i) large[29 + size_t(i)] = char(sum >> (24 - 8 * i));
+  EXPECT_NE(errorOfFile(maskedSquare(large)).find("images[0]: claims 16384 x 16384 texels in "),
+            std::string::npos);
+  std::string webp = webpOf(3, 2, kAlpha);
+  const size_t head = webp.find("VP8L") + 9;
+  ASSERT_EQ(webp[head - 1], 0x2f);
+  webp.replace(head, 4, std::string("\xfe\xff\xff\x1f", 4));  // 16383 by 16384, with alpha
+  EXPECT_NE(errorOfFile(maskedSquare(webp)).find("claims 16383 x 16384 texels in "), std::string::npos);
+  // A large picture of one colour is as small as any.
+  const std::vector<uint8_t> flat(4200 * 4200, 100);
+  EXPECT_EQ(loadBytes("a.glb", maskedSquare(pngOf(4200, 4200, flat)).glb()).surfaces.masks.size(), 1u);
+}
+
+/// ... nor by how often it is named.
+TEST(GltfAlpha, RefusesToReadAPictureTooOften) {
+  const std::vector<uint8_t> flat(4096 * 4096, 100);
+  GltfFile file = maskedSquare(webpOf(4096, 4096, flat));
+  const json material = file.document["materials"][0],
+             primitive = file.document["meshes"][0]["primitives"][0];
+  for (int i = 1; i < 18; ++i) {
+    file.document["materials"].push_back(material);
+    file.document["materials"][size_t(i)]["alphaCutoff"] = 0.5 + 0.01 * i;
+    file.document["meshes"][0]["primitives"].push_back(primitive);
+    file.document["meshes"][0]["primitives"][size_t(i)]["material"] = i;
+  }
+  EXPECT_NE(errorOfFile(file).find("the texels of its masks are far too many for"), std::string::npos);
 }
 
 TEST(GltfAlpha, EveryShorterOrChangedImageIsReadOrRefused) {

@@ -337,6 +337,28 @@ TEST(LoadGltf, CountsGlass) {
       "a.glb: materials[0].extensions.KHR_materials_transmission.transmissionFactor: expected a number");
 }
 
+/// Sparse values over zeros that stand nowhere.
+TEST(LoadGltf, ReadsAccessorsThatAreSparseAlone) {
+  GltfFile file = squareFile<uint8_t>(5121);
+  const Scene plain = loadText("a.glb", file.glb());
+  const std::vector<uint8_t> which = {1, 2, 3}, corners = {1, 2, 4, 5}, values = {1, 2, 2, 3};
+  const auto sparse = [](size_t count, size_t indices, size_t its_values) {
+    return json{{"count", count},
+                {"indices", {{"bufferView", indices}, {"componentType", 5121}}},
+                {"values", {{"bufferView", its_values}}}};
+  };
+  const std::vector<glm::vec3> places(plain.positions.begin() + 1, plain.positions.end());
+  json& accessors = file.document["accessors"];
+  accessors[0].erase("bufferView");
+  accessors[0]["sparse"] = sparse(3, file.addView(bytesOf(which)), file.addView(bytesOf(places)));
+  accessors[1].erase("bufferView");
+  accessors[1]["sparse"] = sparse(4, file.addView(bytesOf(corners)), file.addView(bytesOf(values)));
+  ASSERT_EQ(plain.positions[0], glm::vec3(0));
+  const Scene scene = loadText("a.glb", file.glb());
+  EXPECT_EQ(scene.positions, plain.positions);
+  EXPECT_EQ(scene.triangles, plain.triangles);
+}
+
 TEST(LoadGltf, ErrorsNameThePlace) {
   using Change = std::function<void(json&)>;
   const std::pair<Change, std::string> cases[] = {

@@ -37,21 +37,6 @@ struct StrippedText {
   StripReport report;
 };
 
-StrippedText stripFile(const Folder& folder, const std::string& name, const std::vector<bool>& seen,
-                       const StripOptions& options = {}) {
-  const Scene scene = loadScene(folder / name, {.faces = true});
-  const std::string out = "out" + name.substr(name.find('.'));
-  const StripReport report = stripScene(scene, folder / name, seen, options, folder / out);
-  return {readText(folder / out), loadScene(folder / out), report};
-}
-
-StrippedText stripText(const std::string& name, const std::string& text, const std::vector<bool>& seen,
-                       const StripOptions& options = {}) {
-  const Folder folder;
-  folder.write(name, text);
-  return stripFile(folder, name, seen, options);
-}
-
 /// The triangles of these objects' runs that are kept, by where their corners are.
 std::vector<StripCorners> cornersOf(const Scene& scene, const std::vector<bool>& kept = {}) {
   std::vector<StripCorners> corners;
@@ -69,6 +54,23 @@ std::vector<StripCorners> turned(std::vector<StripCorners> triangles) {
   for (StripCorners& t : triangles)
     std::rotate(t.begin(), std::min_element(t.begin(), t.end(), less), t.end());
   return triangles;
+}
+
+StrippedText stripFile(const Folder& folder, const std::string& name, const std::vector<bool>& seen,
+                       const StripOptions& options = {}) {
+  const Scene scene = loadScene(folder / name, {.faces = true});
+  const std::string out = "out" + name.substr(name.find('.'));
+  const StripReport report = stripScene(scene, folder / name, seen, options, folder / out);
+  StrippedText left{readText(folder / out), loadScene(folder / out), report};
+  EXPECT_EQ(turned(cornersOf(left.scene)), turned(cornersOf(scene, report.kept)));
+  return left;
+}
+
+StrippedText stripText(const std::string& name, const std::string& text, const std::vector<bool>& seen,
+                       const StripOptions& options = {}) {
+  const Folder folder;
+  folder.write(name, text);
+  return stripFile(folder, name, seen, options);
 }
 
 std::vector<bool> randomBits(size_t count, StripRandom& random, uint32_t of = 2) {
@@ -479,7 +481,8 @@ TEST(StripGltf, CompressedViewsStayCompressed) {
       const StrippedText left = stripText("a.glb", glb, {false, true}, {.compact = compact});
       EXPECT_EQ(turned(cornersOf(left.scene)), turned(cornersOf(scene, {false, true})));
       EXPECT_EQ(left.scene.vertexCount(), compact ? 3u : 4u);
-      for (const json& view : documentOf(left.text)["bufferViews"]) {
+      const json document = documentOf(left.text);
+      for (const json& view : document["bufferViews"]) {
         EXPECT_TRUE(view.contains("extensions")) << view;
       }
       EXPECT_LE(left.text.size(), glb.size() + 64);  // of numbers in the JSON
@@ -625,6 +628,24 @@ TEST(StripGltf, DataUrisStayDataUris) {
   EXPECT_EQ(cornersOf(left.scene), cornersOf(scene, {false, true}));
   const std::string uri = json::parse(left.text)["buffers"][0]["uri"];
   EXPECT_TRUE(uri.starts_with("data:application/octet-stream;base64,"));
+}
+
+/// What loads is stripped, too: words in the place of numbers stay where nothing changes.
+TEST(StripGltf, KeepsWordsInThePlaceOfNumbers) {
+  GltfFile file = squareFile<uint16_t>(5123);
+  file.document["extras"] = {{"bound", "WORD"}, {"text", "is \"NaN, \\"}};
+  std::string text = file.gltf();
+  for (const char* word : {"NaN", "-Infinity", "nan(ind)", "1.#QNAN"}) {
+    std::string odd = text;
+    odd.replace(odd.find("\"WORD\""), 6, word);
+    for (const bool compact : {false, true}) {
+      const StrippedText left = stripText("a.gltf", odd, {false, true}, {.compact = compact});
+      EXPECT_EQ(left.scene.triangleCount(), 1u);
+      EXPECT_EQ(left.scene.warnings.size(), 1u);
+      const std::string expected = "\"bound\":" + std::string(word) + ',';
+      EXPECT_NE(left.text.find(expected), std::string::npos) << left.text;
+    }
+  }
 }
 
 /// Changes, adds or takes out something somewhere in the document.

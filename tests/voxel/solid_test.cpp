@@ -93,7 +93,7 @@ TEST(Solid, IsWhatIsInsideOfAClosedMesh) {
       for (const glm::uvec3& t : triangles) mesh.add_face(Vertex(t.x), Vertex(t.y), Vertex(t.z));
       const CGAL::Side_of_triangle_mesh<SolidMesh, SolidKernel> side(mesh);
       const VoxelGrid grid = voxelize(scene, {.lattice = latticeOf(1)});
-      const VoxelBox around = voxelsAround(grid);
+      const VoxelBox around = boxOf(grid);
       for (const InsideRule rule : {InsideRule::kParity, InsideRule::kWinding}) {
         const ClosedParts parts = closedParts(scene, rule);
         EXPECT_EQ(parts.closed, 1u);
@@ -155,7 +155,7 @@ TEST(Solid, CountsTheBoxesOfAnObject) {
     const VoxelGrid grid = voxelize(scene, {.lattice = latticeOf(0.25)});
     for (const InsideRule rule : {InsideRule::kParity, InsideRule::kWinding}) {
       const VoxelSpace space = solidParts(scene, grid, closedParts(scene, rule), rule);
-      const VoxelBox around = voxelsAround(grid);
+      const VoxelBox around = boxOf(grid);
       uint64_t inner = 0;
       for (int z = around.low.z - 1; z <= around.high.z + 1; ++z) {
         for (int y = around.low.y - 1; y <= around.high.y + 1; ++y) {

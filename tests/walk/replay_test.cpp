@@ -352,7 +352,8 @@ TEST_F(SoftwareWalk, FindsWhatASetMisses) {
   EXPECT_EQ(summarize(before.methods[0], 0, kFrames).false_pixels, 0u);
   const WalkScene walk{scene_, draw_, &units_};
   const WalkClock clock = [&] { return now_ += 0.001; };
-  const auto player = makeWalkDevice("cpu", walk, clock)->play("none", {});
+  const auto device = makeWalkDevice("cpu", walk, clock);
+  const auto player = device->play("none", {});
   FrameTimes times;
   player->draw(frames_.cameras[0], 0, 1, times);
   player->check();

@@ -1,0 +1,364 @@
+#include "core/voxel/voxel_file.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+#include <optional>
+
+#include "core/base/error.h"
+#include "core/io/byte_stream.h"
+#include "core/io/varint.h"
+#include "core/pvs/pvs_sections.h"
+#include "core/pvs/set_codec.h"
+
+namespace sightline {
+namespace {
+
+constexpr uint32_t kSectionBlocks = 0x4b4f4c42;     // "BLOK"
+constexpr uint32_t kSectionTriangles = 0x53495254;  // "TRIS"
+constexpr size_t kBlocksAChunk = 64;
+constexpr int kBricksABlock = 512;
+constexpr int kMostLevels = 32;
+// More than what 64 blocks of full bricks take: what claims more is damage.
+constexpr uint64_t kMostChunkBytes = uint64_t(kBlocksAChunk) * (16 + kBricksABlock * 66);
+
+Bytes headPayload(const VoxelHead& head) {
+  ByteWriter out;
+  out.number(int32_t(head.lattice.exponent));
+  out.number(uint32_t(head.has_triangles));
+  out.number(head.scene_hash);
+  out.number(head.triangle_count);
+  for (int axis = 0; axis < 3; ++axis) out.number(head.offset[axis]);
+  return out.bytes();
+}
+
+VoxelHead readHead(std::span<const uint8_t> payload) {
+  ByteReader in(payload);
+  VoxelHead head;
+  head.lattice.exponent = in.number<int32_t>();
+  const uint32_t has_triangles = in.number<uint32_t>();
+  head.has_triangles = has_triangles != 0;
+  head.scene_hash = in.number<uint64_t>();
+  head.triangle_count = in.number<uint32_t>();
+  for (int axis = 0; axis < 3; ++axis) head.offset[axis] = in.number<double>();
+  if (!in.finished() || has_triangles > 1)
+    throw Damage("the head is not as long as it should be, or of a later version");
+  if (head.lattice.exponent < -100 || head.lattice.exponent > 100) {
+    throw Damage(fmt::format("a voxel of 2^{} is out of range", head.lattice.exponent));
+  }
+  return head;
+}
+
+// Places, then bricks, then bits: like beside like packs better.
+Bytes blocksPayload(uint32_t level, std::span<const VoxelBlock> blocks) {
+  ByteWriter raw;
+  for (const VoxelBlock& block : blocks) {
+    for (int axis = 0; axis < 3; ++axis) raw.number(int32_t(block.place[axis]));
+    raw.number(uint32_t(block.bricks.size()));
+  }
+  for (const VoxelBlock& block : blocks) {
+    for (const VoxelBrick& brick : block.bricks) raw.number(brick.place);
+  }
+  for (const VoxelBlock& block : blocks) {
+    for (const VoxelBrick& brick : block.bricks) {
+      for (const uint64_t layer : brick.bits) raw.number(layer);
+    }
+  }
+  ByteWriter out;
+  out.number(level);
+  out.number(uint32_t(blocks.size()));
+  out.raw(compress(raw.bytes()));
+  return out.bytes();
+}
+
+// A block's ids as gaps to the one before, less 1.
+Bytes trianglesPayload(std::span<const VoxelBlock> blocks) {
+  Bytes raw;
+  for (const VoxelBlock& block : blocks) {
+    appendVarint(raw, uint32_t(block.triangles.size()));
+    uint32_t next = 0;
+    for (const uint32_t id : block.triangles) {
+      appendVarint(raw, id - next);
+      next = id + 1;
+    }
+  }
+  ByteWriter out;
+  out.number(uint64_t(raw.size()));
+  out.raw(compress(raw));
+  return out.bytes();
+}
+
+void readBrick(ByteReader& in, VoxelBrick& brick, bool& any) {
+  uint64_t all = 0;
+  for (uint64_t& layer : brick.bits) all |= layer = in.number<uint64_t>();
+  any = all != 0;
+}
+
+std::vector<VoxelBlock> readBlocks(ByteReader& in, uint32_t count) {
+  const auto raw = decompress(in.raw(in.left()), kMostChunkBytes);
+  if (!raw) throw Damage("blocks that cannot be unpacked");
+  ByteReader content(*raw);
+  std::vector<VoxelBlock> blocks(count);
+  std::vector<uint32_t> bricks(count);
+  for (uint32_t i = 0; i < count; ++i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      blocks[i].place[axis] = content.number<int32_t>();
+      if (std::abs(int64_t(blocks[i].place[axis])) > kLargestVoxelPlace / kBlockSide) {
+        throw Damage("a block that is too far out");
+      }
+    }
+    bricks[i] = content.number<uint32_t>();
+    if (content.failed() || bricks[i] == 0 || bricks[i] > uint32_t(kBricksABlock)) {
+      throw Damage(fmt::format("a block of {} bricks: expected 1 .. {}", bricks[i], kBricksABlock));
+    }
+    if (i > 0 && !placeBefore(blocks[i - 1].place, blocks[i].place))
+      throw Damage("blocks that are out of order");
+  }
+  for (uint32_t i = 0; i < count; ++i) {
+    blocks[i].bricks.resize(bricks[i]);
+    int last = -1;
+    for (VoxelBrick& brick : blocks[i].bricks) {
+      brick.place = content.number<uint16_t>();
+      if (brick.place >= kBricksABlock || int(brick.place) <= last)
+        throw Damage("bricks that are out of order");
+      last = brick.place;
+    }
+  }
+  for (VoxelBlock& block : blocks) {
+    for (VoxelBrick& brick : block.bricks) {
+      bool any = false;
+      readBrick(content, brick, any);
+      if (!any) throw Damage("a brick without a voxel");
+    }
+  }
+  if (!content.finished()) throw Damage("blocks that are cut off");
+  return blocks;
+}
+
+void readTriangles(std::span<const uint8_t> payload, std::span<VoxelBlock> blocks, uint32_t triangle_count) {
+  ByteReader in(payload);
+  const uint64_t size = in.number<uint64_t>();
+  const auto raw = decompress(in.raw(in.left()), size);
+  if (!raw || raw->size() != size) throw Damage("ids that cannot be unpacked");
+  size_t at = 0;
+  for (VoxelBlock& block : blocks) {
+    const auto count = readVarint(*raw, at);
+    if (!count || *count == 0 || *count > raw->size() - at)
+      throw Damage("a block without ids, or with too many");
+    uint64_t next = 0;
+    block.triangles.reserve(*count);
+    for (uint32_t i = 0; i < *count; ++i) {
+      const auto gap = readVarint(*raw, at);
+      if (!gap || next + *gap >= triangle_count) throw Damage("an id that the scene does not have");
+      block.triangles.push_back(uint32_t(next + *gap));
+      next += uint64_t(*gap) + 1;
+    }
+  }
+  if (at != raw->size()) throw Damage("more ids than blocks");
+}
+
+// The parts of a file, one after the other, each with its checksum looked at.
+class Sections {
+ public:
+  explicit Sections(std::span<const uint8_t> bytes) : bytes_(bytes) {}
+  size_t at() const { return at_; }
+  bool atEnd() const { return at_ == bytes_.size(); }
+
+  std::span<const uint8_t> next(uint32_t& kind) {
+    ByteReader in(bytes_.subspan(at_));
+    kind = in.number<uint32_t>();
+    in.number<uint32_t>();
+    const uint64_t size = in.number<uint64_t>();
+    const auto payload = in.raw(size);
+    const uint64_t checksum = in.number<uint64_t>();
+    if (in.failed()) throw Damage("the file is cut off here");
+    const size_t hashed = kSectionHeadBytes + payload.size();
+    if (XXH3_64bits(bytes_.data() + at_, hashed) != checksum)
+      throw Damage("a section whose checksum is wrong");
+    at_ += hashed + kSectionChecksumBytes;
+    return payload;
+  }
+  void skip(size_t bytes) { at_ += bytes; }
+
+ private:
+  std::span<const uint8_t> bytes_;
+  size_t at_ = 0;
+};
+
+Bytes prelude() {
+  ByteWriter out;
+  out.raw(kVoxelMagic);
+  out.number(kVoxelVersion);
+  out.number(uint32_t(0));
+  return out.bytes();
+}
+
+void checkPrelude(std::span<const uint8_t> bytes) {
+  ByteReader in(bytes);
+  const auto magic = in.raw(sizeof(kVoxelMagic));
+  const uint32_t version = in.number<uint32_t>();
+  in.number<uint32_t>();
+  if (magic.size() != sizeof(kVoxelMagic) ||
+      std::memcmp(magic.data(), kVoxelMagic, sizeof(kVoxelMagic)) != 0) {
+    throw Damage("no voxel file: make one with voxels");
+  }
+  if (in.failed()) throw Damage("the file is cut off here");
+  if (version != kVoxelVersion) {
+    throw Damage(fmt::format("version {} of the format: this program reads {}", version, kVoxelVersion));
+  }
+}
+
+// Adds a chunk to its level, which follows the chunk before it or the level before.
+void addBlocks(VoxelFile& file, uint32_t level, std::vector<VoxelBlock>&& blocks) {
+  if (level == file.levels.size() && level < kMostLevels) {
+    file.levels.push_back({.lattice = {file.head.lattice.exponent + int(level)}, .blocks = {}});
+  } else if (level + 1 != file.levels.size()) {
+    throw Damage(fmt::format("blocks of level {} at the wrong place", level));
+  }
+  std::vector<VoxelBlock>& all = file.levels.back().blocks;
+  if (!all.empty() && !placeBefore(all.back().place, blocks.front().place))
+    throw Damage("blocks that are out of order");
+  std::ranges::move(blocks, std::back_inserter(all));
+}
+
+VoxelFile parse(std::span<const uint8_t> bytes, Sections& sections) {
+  checkPrelude(bytes);
+  sections.skip(kPvsPreludeBytes);
+  VoxelFile file;
+  uint32_t kind = 0, chunks = 0;
+  const auto head = sections.next(kind);
+  if (kind != kSectionHead) throw Damage("the head is missing");
+  file.head = readHead(head);
+  while (true) {
+    const size_t before = sections.at();
+    ByteReader in(sections.next(kind));
+    if (kind == kSectionEnd) {
+      const uint32_t count = in.number<uint32_t>();
+      const uint64_t checksum = in.number<uint64_t>();
+      if (!in.finished() || count != chunks || checksum != XXH3_64bits(bytes.data(), before)) {
+        throw Damage("the end does not fit the file");
+      }
+      if (!sections.atEnd()) throw Damage("bytes after the end");
+      return file;
+    }
+    const uint32_t level = in.number<uint32_t>(), count = in.number<uint32_t>();
+    if (kind != kSectionBlocks || in.failed() || count == 0 || count > kBlocksAChunk)
+      throw Damage("a section of an unknown kind");
+    std::vector<VoxelBlock> blocks = readBlocks(in, count);
+    if (level == 0 && file.head.has_triangles) {
+      const auto triangles = sections.next(kind);
+      if (kind != kSectionTriangles) throw Damage("blocks without their ids");
+      readTriangles(triangles, blocks, file.head.triangle_count);
+    }
+    addBlocks(file, level, std::move(blocks));
+    ++chunks;
+  }
+}
+
+}  // namespace
+
+VoxelHead headOf(const Scene& scene, const Lattice& lattice, bool has_triangles) {
+  return {.lattice = lattice,
+          .has_triangles = has_triangles,
+          .scene_hash = hashScene(scene),
+          .triangle_count = scene.triangleCount(),
+          .offset = scene.offset};
+}
+
+VoxelWriter::VoxelWriter(const std::filesystem::path& file, const VoxelHead& head)
+    : output_(file), head_(head) {
+  coarser_ = std::make_unique<CoarserBlocks>(
+      [this](VoxelBlock&& block) { coarse_.front().blocks.push_back(std::move(block)); });
+  coarse_.push_back({.lattice = {head.lattice.exponent + 1}, .blocks = {}});
+  counts_.resize(1);
+  put(prelude());
+  put(writeSection(kSectionHead, headPayload(head)));
+}
+
+VoxelWriter::~VoxelWriter() = default;
+
+void VoxelWriter::put(const Bytes& bytes) {
+  output_.write(bytes.data(), bytes.size());
+  checksum_.add(bytes);
+}
+
+void VoxelWriter::putChunk(size_t level, std::vector<VoxelBlock>& blocks) {
+  if (blocks.empty()) return;
+  VoxelLevelCounts& counts = counts_[level];
+  for (const VoxelBlock& block : blocks) {
+    counts.voxels += block.count();
+    counts.bricks += block.bricks.size();
+  }
+  counts.blocks += blocks.size();
+  const Bytes geometry = writeSection(kSectionBlocks, blocksPayload(uint32_t(level), blocks));
+  counts.geometry_bytes += geometry.size();
+  put(geometry);
+  if (level == 0 && head_.has_triangles) {
+    const Bytes triangles = writeSection(kSectionTriangles, trianglesPayload(blocks));
+    counts.triangle_bytes += triangles.size();
+    put(triangles);
+  }
+  ++chunks_;
+  blocks.clear();
+}
+
+void VoxelWriter::add(VoxelBlock&& block) {
+  coarser_->add(block);
+  pending_.push_back(std::move(block));
+  if (pending_.size() == kBlocksAChunk) putChunk(0, pending_);
+}
+
+std::vector<VoxelLevelCounts> VoxelWriter::finish() {
+  putChunk(0, pending_);
+  coarser_->finish();
+  // The finest level is not at hand any more; that it was a root is so small a case that one level too many
+  // does not matter.
+  while (!isRoot(coarse_.back())) coarse_.push_back(coarser(coarse_.back()));
+  for (size_t i = 0; i < coarse_.size(); ++i) {
+    counts_.emplace_back();
+    std::vector<VoxelBlock> chunk;
+    for (VoxelBlock& block : coarse_[i].blocks) {
+      chunk.push_back(std::move(block));
+      if (chunk.size() == kBlocksAChunk) putChunk(i + 1, chunk);
+    }
+    putChunk(i + 1, chunk);
+  }
+  ByteWriter end;
+  end.number(chunks_);
+  end.number(checksum_.value());
+  put(writeSection(kSectionEnd, end.bytes()));
+  output_.commit();
+  return counts_;
+}
+
+VoxelFile parseVoxels(std::span<const uint8_t> bytes, const std::filesystem::path& file) {
+  Sections sections(bytes);
+  try {
+    return parse(bytes, sections);
+  } catch (const Damage& damage) {
+    throw Error(fmt::format("{}: byte {}: {}", file.string(), sections.at(), damage.what()));
+  }
+}
+
+VoxelFile loadVoxels(const std::filesystem::path& file) {
+  const FileBytes bytes = readFile(file);
+  return parseVoxels({reinterpret_cast<const uint8_t*>(bytes.data.get()), bytes.size}, file);
+}
+
+bool isVoxelFile(const std::filesystem::path& file) {
+  char start[sizeof(kVoxelMagic)] = {};
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored))
+    std::ifstream(file, std::ios::binary).read(start, sizeof(start));
+  return std::memcmp(start, kVoxelMagic, sizeof(start)) == 0 || lowerExtension(file) == ".slv";
+}
+
+void requireScene(const VoxelHead& head, const Scene& scene, const std::filesystem::path& file) {
+  if (head.scene_hash == hashScene(scene)) return;
+  throw Error(
+      fmt::format("{}: voxels of another scene ({} triangles; this one has {}): make them anew with voxels",
+                  file.string(), head.triangle_count, scene.triangleCount()));
+}
+
+}  // namespace sightline

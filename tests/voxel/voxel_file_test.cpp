@@ -1,0 +1,145 @@
+#include "core/voxel/voxel_file.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <random>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/voxel/voxelize.h"
+#include "tests/support/random_triangles.h"
+#include "tests/support/temporary_folder.h"
+
+namespace sightline {
+namespace {
+
+Scene soupScene(uint32_t seed) {
+  testing_support::Random random(seed);
+  Scene scene = testing_support::soup(random, 300, 0.3f, 0.5f);
+  scene.objects.push_back({"all", 0, scene.triangleCount()});
+  return scene;
+}
+
+VoxelFile voxelsOf(const Scene& scene, double size, bool with_triangles) {
+  const Lattice lattice = latticeOf(size);
+  VoxelFile file{headOf(scene, lattice, with_triangles), {}};
+  file.levels = pyramidOf(voxelize(scene, {.lattice = lattice, .with_triangles = with_triangles}));
+  return file;
+}
+
+std::vector<VoxelLevelCounts> write(const VoxelFile& content, const std::filesystem::path& file) {
+  VoxelWriter writer(file, content.head);
+  for (VoxelBlock block : content.levels.front().blocks) writer.add(std::move(block));
+  return writer.finish();
+}
+
+std::vector<uint8_t> bytesOf(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(VoxelFile, ComesBackAsItWasWritten) {
+  const TemporaryFolder folder;
+  for (const bool with_triangles : {false, true}) {
+    const VoxelFile content = voxelsOf(soupScene(1), 0x1p-6, with_triangles);
+    ASSERT_GT(content.levels.front().blocks.size(), 8u);
+    const auto counts = write(content, folder / "a.slv");
+    const VoxelFile read = loadVoxels(folder / "a.slv");
+    EXPECT_EQ(read.head, content.head);
+    ASSERT_EQ(read.levels.size(), content.levels.size());
+    ASSERT_EQ(counts.size(), content.levels.size());
+    for (size_t level = 0; level < read.levels.size(); ++level) {
+      EXPECT_EQ(read.levels[level].blocks, content.levels[level].blocks) << level;
+      EXPECT_EQ(read.levels[level].lattice, content.levels[level].lattice) << level;
+      EXPECT_EQ(counts[level].voxels, content.levels[level].count()) << level;
+    }
+    EXPECT_LT(double(counts[0].geometry_bytes), 1.5 * double(counts[0].voxels));
+  }
+}
+
+// Whatever is cut off or changed is said to be damaged; nothing is read that is not there.
+TEST(VoxelFile, EveryCutAndEveryChangedByteIsFound) {
+  const TemporaryFolder folder;
+  write(voxelsOf(soupScene(2), 0.25, true), folder / "a.slv");
+  const std::vector<uint8_t> whole = bytesOf(folder / "a.slv");
+  ASSERT_NO_THROW(parseVoxels(whole, "a.slv"));
+  for (size_t size = 0; size < whole.size(); ++size) {
+    EXPECT_THROW(parseVoxels(std::span(whole).first(size), "a.slv"), Error) << size;
+  }
+  for (size_t at = 0; at < whole.size(); ++at) {
+    std::vector<uint8_t> changed = whole;
+    changed[at] ^= 0x10;
+    EXPECT_THROW(parseVoxels(changed, "a.slv"), Error) << at;
+  }
+}
+
+TEST(VoxelFile, NothingIsLeftOfOneThatIsNotFinished) {
+  const TemporaryFolder folder;
+  { VoxelWriter writer(folder / "a.slv", headOf(soupScene(3), latticeOf(0.25), false)); }
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(VoxelFile, IsOfItsScene) {
+  const Scene scene = soupScene(4), other = soupScene(5);
+  const VoxelHead head = headOf(scene, latticeOf(1), true);
+  EXPECT_NO_THROW(requireScene(head, scene, "a.slv"));
+  EXPECT_THROW(requireScene(head, other, "a.slv"), Error);
+}
+
+std::set<std::array<int, 3>> placesIn(const VoxelGrid& grid) {
+  std::set<std::array<int, 3>> places;
+  for (const VoxelBlock& block : grid.blocks) {
+    BlockBits bits;
+    bits.insert(block.bricks);
+    for (int z = 0; z < 64; ++z) {
+      for (int y = 0; y < 64; ++y) {
+        for (int x = 0; x < 64; ++x) {
+          if ((bits.row(y, z) >> x) & 1)
+            places.insert({64 * block.place.x + x, 64 * block.place.y + y, 64 * block.place.z + z});
+        }
+      }
+    }
+  }
+  return places;
+}
+
+// Right: a voxel of a level is in it if one of its eight is in the level below.
+TEST(Pyramid, HoldsWhoeverHasAChild) {
+  const VoxelFile file = voxelsOf(soupScene(6), 0x1p-5, true);
+  ASSERT_GT(file.levels.size(), 5u);
+  for (size_t level = 0; level + 1 < file.levels.size(); ++level) {
+    std::set<std::array<int, 3>> expected;
+    for (const auto& p : placesIn(file.levels[level])) expected.insert({p[0] >> 1, p[1] >> 1, p[2] >> 1});
+    EXPECT_EQ(placesIn(file.levels[level + 1]), expected) << level;
+    for (size_t i = 1; i < file.levels[level].blocks.size(); ++i) {
+      EXPECT_TRUE(placeBefore(file.levels[level].blocks[i - 1].place, file.levels[level].blocks[i].place));
+    }
+  }
+  EXPECT_TRUE(isRoot(file.levels.back()));
+  EXPECT_FALSE(isRoot(file.levels[file.levels.size() - 2]));
+  EXPECT_LE(file.levels.back().count(), 8u);
+}
+
+// The coarser level of a scene's voxels is not more than the scene's coarser voxels: what meets a large cube
+// meets one of its eight.
+TEST(Pyramid, IsTheSceneVoxelizedCoarser) {
+  const Scene scene = soupScene(7);
+  const VoxelGrid fine = voxelize(scene, {.lattice = latticeOf(0x1p-5), .with_triangles = false});
+  const VoxelGrid coarse = voxelize(scene, {.lattice = latticeOf(0x1p-4), .with_triangles = false});
+  EXPECT_EQ(coarser(fine).blocks, coarse.blocks);
+}
+
+TEST(VoxelGrid, KnowsItsBox) {
+  const VoxelGrid grid = voxelize(soupScene(8), {.lattice = latticeOf(0x1p-5)});
+  VoxelBox expected{glm::ivec3(1 << 20), glm::ivec3(-(1 << 20))};
+  for (const auto& p : placesIn(grid)) {
+    const glm::ivec3 place(p[0], p[1], p[2]);
+    expected = {glm::min(expected.low, place), glm::max(expected.high, place)};
+  }
+  EXPECT_EQ(boxOf(grid).low, expected.low);
+  EXPECT_EQ(boxOf(grid).high, expected.high);
+}
+
+}  // namespace
+}  // namespace sightline
