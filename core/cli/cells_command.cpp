@@ -40,6 +40,7 @@ struct CellsArguments {
   std::vector<std::string> region;
   std::vector<uint64_t> count;
   GridOptions grid_options;
+  CLI::Option* free_side = nullptr;
   std::vector<std::string> path;
   std::filesystem::path walk;
   PathOptions path_options;
@@ -206,8 +207,9 @@ void run(const CellsArguments& arguments) {
     throw Error("cells: takes one of --grid, --floor, --path and --walk (see: sightline cells --help)",
                 kExitUsage);
   }
-  if (!arguments.free.reach.empty() && arguments.grid.empty() && !arguments.free.floor) {
-    throw Error("cells: --reach is of --grid and --floor", kExitUsage);
+  if (arguments.grid.empty() && !arguments.free.floor &&
+      (!arguments.free.reach.empty() || arguments.free_side->count() > 0)) {
+    throw Error("cells: --reach and --free-side are of --grid and --floor", kExitUsage);
   }
   std::vector<std::filesystem::path> inputs(arguments.path.begin(), arguments.path.end());
   inputs.push_back(arguments.scene);
@@ -227,6 +229,14 @@ constexpr const char* kCellsFooter =
     "below its centre, and it is not inside of something solid: at least half of the\n"
     "triangles that it sees are seen from their front (counter-clockwise), or what\n"
     "--free-side says.\n\n"
+    "--reach finds free space by voxels, whatever faces there are: what joins with a\n"
+    "place through voxels that no triangle meets. Boxes of the grid are kept where\n"
+    "that is.\n\n"
+    "Boxes of --floor stand where one walks: on voxels with --head free above, from\n"
+    "one to the next by --step at most, in parts of the floor that are as large as a\n"
+    "box, or on which one comes to stand from the places of --reach. Each covers as\n"
+    "much as it can of what others leave, and holds the eye wherever one stands\n"
+    "under it.\n\n"
     "A box that touches a wall sees, from its surface, what is behind. So sides with\n"
     "triangles near them come in, until they are --margin away; the others stay, and\n"
     "boxes meet each other there. A box of the path is left out if a side would come\n"
@@ -238,6 +248,8 @@ constexpr const char* kCellsFooter =
     "  sightline cells level.obj -o cells.json --grid 2 --region -10,0,-10 10,4,10\n"
     "  sightline cells level.obj -o cells.json --grid 2 --origin -10,0,-10 \\\n"
     "      --count 10 1 10\n"
+    "  sightline cells level.obj -o cells.json --grid 4,2,4 --reach 0,1.5,0\n"
+    "  sightline cells level.obj -o cells.json --floor 4 --least 0.75\n"
     "  sightline cells city.glb -o cells.json --width 2.5 --height 2 --length 150 \\\n"
     "      --path 0,1.5,-200 0,1.5,200 120,1.5,200\n"
     "  sightline cells city.glb -o cells.json --path points.txt\n"
@@ -267,8 +279,9 @@ void declareGrid(CLI::App& command, CellsArguments& a) {
       .add_option("--max-height", a.grid_options.max_height,
                   "Only boxes with something at most so far below them (default: any)")
       ->needs(grid);
-  declareFreeSide(command, a.grid_options.free_side,
-                  "front: keep boxes that see front faces; back: that see back faces; any: both");
+  a.free_side =
+      declareFreeSide(command, a.grid_options.free_side,
+                      "front: keep boxes that see front faces; back: that see back faces; any: both");
 }
 
 void declarePath(CLI::App& command, CellsArguments& a) {
@@ -290,7 +303,8 @@ void declarePath(CLI::App& command, CellsArguments& a) {
 }  // namespace
 
 void addCellsCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("cells", "Place view cells: a grid in free space, or along a path");
+  CLI::App* command =
+      app.add_subcommand("cells", "Place view cells: a grid in free space, on the floor, or along a path");
   const auto a = std::make_shared<CellsArguments>();
   command->add_option("SCENE", a->scene, "Scene file: .obj, .gltf, .glb or .ply")->required();
   command->add_option("-o,--output", a->output, "Cells file to write (.json), or - for standard output")

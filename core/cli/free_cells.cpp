@@ -90,54 +90,16 @@ std::string voxelsText(const Lattice& lattice) {
   return fmt::format("voxels of {:g}", lattice.voxelSize());
 }
 
-/// The parts of the floor that count.
-std::vector<bool> chooseParts(const Floor& floor, const FreeSpace& free, const std::vector<glm::dvec3>& seeds,
-                              double least_tiles) {
-  std::vector<bool> keep(floor.part_sizes.size(), false);
-  for (const glm::dvec3& seed : seeds) {
-    const uint32_t tile = tileBelow(floor, *free.space, voxelAt(free.grid.lattice, seed));
-    if (tile == FloorTile::kNoTile) {
-      throw Error(fmt::format("no floor to stand on is below the place {:g},{:g},{:g} of --reach: take one "
-                              "above a floor, with --head free above it, or smaller voxels",
-                              seed.x, seed.y, seed.z),
-                  kExitUsage);
-    }
-    keep[floor.tiles[tile].part] = true;
-  }
-  if (!seeds.empty()) return keep;
-  // Not on tables and ledges: parts as large as a box may be.
-  for (size_t i = 0; i < keep.size(); ++i) keep[i] = double(floor.part_sizes[i]) >= least_tiles;
-  return keep;
-}
-
 struct PlacedOnFloor {
   FloorCells cells;
   size_t parts = 0, all_parts = 0;
 };
 
 PlacedOnFloor runFloor(const Scene& scene, const FreeSpace& free, const std::vector<glm::dvec3>& seeds,
-                       const FloorCellOptions& options, Watched& watched) {
-  const Lattice& lattice = free.grid.lattice;
-  FloorOptions floor_options = floorOptions(lattice, options);
-  floor_options.progress = watched.progress("floor");
-  floor_options.stop = watched.flag();
-  const Floor all = findFloor(*free.space, floor_options);
-  if (all.tiles.empty()) {
-    throw Error(fmt::format("the scene has no floor with {:g} free above it (--head) in {}", options.head,
-                            voxelsText(lattice)));
-  }
-  const double along = options.largest / lattice.voxelSize();
-  const std::vector<bool> keep = chooseParts(all, free, seeds, along * along);
-  const Floor floor = tilesOf(all, [&](uint32_t tile) { return keep[all.tiles[tile].part]; });
-  if (floor.tiles.empty()) {
-    throw Error(
-        fmt::format("no part of the floor is as large as a box of {:g}: take a smaller --floor, or the "
-                    "part below a place by --reach",
-                    options.largest));
-  }
-  PlacedOnFloor placed{{}, floor.part_sizes.size(), all.part_sizes.size()};
-  placed.cells = floorCells(scene, buildSceneTree(scene), lattice, floor, options);
-  return placed;
+                       const FloorCellOptions& options) {
+  const WalkedFloor walked = walkedFloor(*free.space, seeds, options);
+  return {floorCells(scene, buildSceneTree(scene), free.grid.lattice, walked.floor, options),
+          walked.floor.part_sizes.size(), walked.all_parts};
 }
 
 }  // namespace
@@ -169,7 +131,7 @@ std::vector<ViewCell> placeOnFloor(const Scene& scene, const FreeCellsArguments&
     const std::unique_ptr<FreeSpace> free =
         seeds.empty() ? voxelizeScene(scene, lattice, watched) : reachFrom(scene, lattice, seeds, watched);
     if (!free->space) free->space.emplace(free->grid);
-    return runFloor(scene, *free, seeds, options, watched);
+    return runFloor(scene, *free, seeds, options);
   });
   const FloorCells& cells = placed.cells;
   const double tile = lattice.voxelSize() * lattice.voxelSize();

@@ -149,6 +149,38 @@ FloorOptions floorOptions(const Lattice& lattice, const FloorCellOptions& option
   return {.head = limits.head, .step = limits.step};
 }
 
+WalkedFloor walkedFloor(const VoxelSpace& space, std::span<const glm::dvec3> places,
+                        const FloorCellOptions& options) {
+  const Lattice& lattice = space.grid().lattice;
+  FloorOptions floor_options = floorOptions(lattice, options);
+  floor_options.stop = options.stop;
+  const Floor all = findFloor(space, floor_options);
+  std::vector<bool> keep(all.part_sizes.size(), false);
+  for (const glm::dvec3& place : places) {
+    const uint32_t tile = tileBelow(all, space, voxelAt(lattice, place));
+    if (tile == FloorTile::kNoTile) {
+      throw Error(
+          fmt::format("cells on the floor: there is none to stand on below {:g},{:g},{:g}: take a place "
+                      "over a floor with {:g} free above it, or smaller voxels",
+                      place.x, place.y, place.z, options.head),
+          kExitUsage);
+    }
+    keep[all.tiles[tile].part] = true;
+  }
+  const double along = options.largest / lattice.voxelSize();
+  for (size_t i = 0; places.empty() && i < keep.size(); ++i) {
+    keep[i] = double(all.part_sizes[i]) >= along * along;
+  }
+  WalkedFloor walked{tilesOf(all, [&](uint32_t tile) { return keep[all.tiles[tile].part]; }),
+                     all.part_sizes.size()};
+  if (!walked.floor.tiles.empty()) return walked;
+  throw Error(
+      fmt::format("cells on the floor: no part of it with {:g} free above is as large as a cell may be, "
+                  "{:g}: take smaller ones, or the part below a place",
+                  options.head, options.largest),
+      kExitUsage);
+}
+
 FloorCells floorCells(const Scene& scene, const Bvh& bvh, const Lattice& lattice, const Floor& floor,
                       const FloorCellOptions& options) {
   checkLengths(lattice, options);

@@ -38,7 +38,20 @@ struct FloorCells {
   uint64_t in_solid = 0;  ///< cells that were left out for free_side
 };
 
-/// What the lengths are in voxels.
+/// Where one walks, of all parts of the floor.
+struct WalkedFloor {
+  Floor floor;
+  uint64_t all_parts = 0;
+};
+
+/// The parts of the space's floor on which one comes to stand from free places of the scene's space; without
+/// places those that are at least as large as a cell may be, so not tables and ledges. Throws Error (exit
+/// code 2) for a place without a floor below it, and where no part is large enough; as floorOptions and
+/// findFloor.
+WalkedFloor walkedFloor(const VoxelSpace& space, std::span<const glm::dvec3> places,
+                        const FloorCellOptions& options);
+
+/// What the lengths are in voxels. Throws Error (exit code 2) for lengths out of their ranges.
 FloorOptions floorOptions(const Lattice& lattice, const FloorCellOptions& options);
 
 /// View cells where one walks: boxes that stand on the floor, up to head, each over tiles that are neighbours
