@@ -192,12 +192,12 @@ void printKernels() {
   while (std::getline(list, name, ';')) fmt::print("kernel {}\n", name);
 }
 
-/// The scene with holes, glass and fronts alone among its triangles.
+/// The scene with holes, glass and fronts alone among its stored triangles.
 Scene withSurfaces(Scene scene) {
   Surfaces& surfaces = scene.surfaces;
   const uint32_t mask =
       addMask(surfaces, 7, 3, {kWrapRepeat, kWrapMirror}, [](uint64_t texel) { return texel % 3 != 0; });
-  for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
+  for (size_t id = 0; id < scene.triangles.size(); ++id) {
     constexpr uint32_t kWords[] = {0, kSurfaceGlass, kSurfaceFrontOnly, kSurfaceMasked};
     uint32_t word = kWords[id % 4];
     if (word == kSurfaceMasked) {
@@ -214,6 +214,7 @@ Scene withSurfaces(Scene scene) {
 void bakeOtherScenes(const Scene& scene, const Bvh& bvh, const ViewCell& cell) {
   const Scene surfaces = withSurfaces(scene);
   const Scene instances = testing_support::randomInstances(3, 20, 40);
+  const Scene instances_with_surfaces = withSurfaces(instances);
   const Bvh two_levels = buildSceneTree(instances);
   ViewCell middle = cell;
   middle.center = glm::dvec3(0);
@@ -222,6 +223,7 @@ void bakeOtherScenes(const Scene& scene, const Bvh& bvh, const ViewCell& cell) {
       bake(surfaces, bvh, cell, rays_per_item, method, SetKind::kArray);
       bake(instances, two_levels, middle, rays_per_item, method, SetKind::kHash);
     }
+    bake(instances_with_surfaces, two_levels, middle, rays_per_item, Method::kGvspp, SetKind::kArray);
   }
 }
 
