@@ -120,4 +120,36 @@ void VoxelSpace::setInner(const glm::ivec3& block, Share share, PackedBlock&& pa
   if (share == Share::kSome) packed_.push_back(std::move(packed));
 }
 
+VoxelGrid filledGrid(const VoxelSpace& space) {
+  VoxelGrid filled;
+  filled.lattice = space.grid().lattice;
+  const VoxelBox voxels = boxOf(space.grid()), blocks = space.blocks();
+  const VoxelLookup lookup(space.grid());
+  BlockBits free, surface;
+  for (int z = blocks.low.z; z <= blocks.high.z; ++z) {
+    for (int y = blocks.low.y; y <= blocks.high.y; ++y) {
+      for (int x = blocks.low.x; x <= blocks.high.x; ++x) {
+        const VoxelBlock* block = lookup.block({x, y, z});
+        if (block == nullptr && space.innerInBlock({x, y, z}) == Share::kNone) continue;
+        const glm::ivec3 low = glm::ivec3(x, y, z) * kBlockSide;
+        const VoxelBox part =
+            overlapOf({voxels.low - low, voxels.high - low}, {glm::ivec3(0), glm::ivec3(kBlockSide - 1)});
+        space.bitsOf({x, y, z}, free, surface);
+        surface.clear();
+        for (int k = part.low.z; k <= part.high.z; ++k) {
+          for (int j = part.low.y; j <= part.high.y; ++j) {
+            surface.row(j, k) = ~free.row(j, k) & rowBits(part.low.x, part.high.x);
+          }
+        }
+        VoxelBlock whole;
+        whole.place = {x, y, z};
+        whole.bricks = surface.bricks();
+        if (block != nullptr) whole.triangles = block->triangles;
+        if (!whole.bricks.empty()) filled.blocks.push_back(std::move(whole));
+      }
+    }
+  }
+  return filled;
+}
+
 }  // namespace sightline

@@ -62,6 +62,9 @@ class VoxelSpace {
   size_t indexOf(const glm::ivec3& block) const;
 };
 
+/// The grid's voxels and the inner ones of the box around them, as one set; blocks keep their triangles.
+VoxelGrid filledGrid(const VoxelSpace& space);
+
 /// Blocks of a box that a space may have at most.
 inline constexpr uint64_t kMostSpaceBlocks = uint64_t(1) << 28;
 
