@@ -214,8 +214,15 @@ void run(const CellsArguments& arguments) {
   std::vector<std::filesystem::path> inputs(arguments.path.begin(), arguments.path.end());
   inputs.push_back(arguments.scene);
   inputs.push_back(arguments.walk);
-  requireSeparate(std::array{arguments.output}, inputs);
+  requireSeparate(std::array{arguments.output, arguments.free.picture}, inputs);
   requireNew(arguments.output, arguments.overwrite);
+  const std::filesystem::path& picture = arguments.free.picture;
+  if (!picture.empty()) {
+    if (lowerExtension(picture) != ".png") {
+      throw Error(fmt::format("{}: must end with .png", picture.string()), kExitUsage);
+    }
+    requireNew(picture, arguments.overwrite);
+  }
   const TextOutputs outputs({&arguments.output, 1});
   const Scene scene = loadScene(arguments.scene, arguments.load);
   const std::vector<ViewCell> cells = placeCells(scene, arguments);

@@ -12,12 +12,15 @@
 #include "core/cli/commands.h"
 #include "core/cli/points.h"
 #include "core/cli/stop_signal.h"
+#include "core/picture/floor_picture.h"
 #include "core/scene/scene_tree.h"
 #include "core/voxel/reach.h"
 #include "core/voxel/voxelize.h"
 
 namespace sightline {
 namespace {
+
+constexpr uint32_t kLongestPicture = 1600;  // pixels
 
 /// Stops in order, and shows how far it is.
 class Watched {
@@ -149,6 +152,10 @@ std::vector<ViewCell> placeOnFloor(const Scene& scene, const FreeCellsArguments&
   if (cells.inset > 0) {
     fmt::print("{} of them are smaller, to keep clear of triangles (--margin)\n", cells.inset);
   }
+  if (!arguments.picture.empty()) {
+    savePng(floorPicture(lattice, cells.floor, cells.is_covered, cells.cells, kLongestPicture),
+            arguments.picture);
+  }
   return cells.cells;
 }
 
@@ -182,6 +189,10 @@ void declareFreeCells(CLI::App& command, FreeCellsArguments& a) {
   const auto length = [&](const char* name, double& value, const char* what, double low) {
     command.add_option(name, value, what)->capture_default_str()->check(above(low))->needs(floor);
   };
+  command
+      .add_option("--picture", a.picture,
+                  "A picture of the floor from above to write (.png): what boxes cover green, what not red")
+      ->needs(floor);
   length("--least", o.least, "Of boxes on the floor: their sides at least", 0);
   length("--eye", o.eye, "Of one who walks: the eye's height above the floor", 0);
   length("--head", o.head, "And the free height that is needed, up to which boxes reach", 0);

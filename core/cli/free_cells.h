@@ -1,5 +1,6 @@
 #pragma once
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@ struct FreeCellsArguments {
   std::optional<double> voxel;
   std::optional<double> floor;  ///< largest size
   FloorCellOptions floor_options;
+  std::filesystem::path picture;  ///< of the floor
 };
 
 /// --reach, --voxel, --floor and what belongs to it. They write into `arguments`, which must live as long as
@@ -35,7 +37,7 @@ struct FreeSpace {
 std::unique_ptr<FreeSpace> findReached(const Scene& scene, const FreeCellsArguments& arguments,
                                        double largest_voxel);
 
-/// Of cells --floor, with a line about the floor and what they cover.
+/// Of cells --floor, with a line about the floor and what they cover, and its picture.
 std::vector<ViewCell> placeOnFloor(const Scene& scene, const FreeCellsArguments& arguments,
                                    const std::optional<double>& margin, FreeSide free_side);
 

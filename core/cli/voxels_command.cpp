@@ -149,7 +149,7 @@ constexpr const char* kVoxelsFooter =
     "Examples:\n"
     "  sightline voxels city.glb -o city.slv --voxel 0.25\n"
     "  sightline voxels statue.ply -o statue.slv --along 1024 --separate 6\n"
-    "  sightline voxels statue.ply -o statue.slv --along 1024 --solid winding --closed\n";
+    "  sightline voxels city.glb -o city.slv --voxel 1 --solid winding --closed\n";
 
 }  // namespace
 

@@ -105,37 +105,11 @@ std::vector<bool> freeParts(const Floor& floor, const std::vector<Placed>& place
   return is_free;
 }
 
-// For each tile 1 if a cell holds the eye of who stands on its middle.
-std::vector<uint8_t> coverOf(const Lattice& lattice, const Floor& floor, double eye,
-                             std::span<const ViewCell> cells) {
-  std::vector<uint8_t> is_covered(floor.tiles.size(), 0);
-  const double size = lattice.voxelSize();
-  tbb::parallel_for(size_t{0}, cells.size(), [&](size_t i) {
-    const glm::dvec3 low = cells[i].center - cells[i].size * 0.5,
-                     high = cells[i].center + cells[i].size * 0.5;
-    const glm::ivec3 first = voxelAt(lattice, low), last = voxelAt(lattice, high);
-    for (int z = first.z; z <= last.z; ++z) {
-      auto tile = std::lower_bound(
-          floor.tiles.begin(), floor.tiles.end(), std::tie(z, first.x),
-          [](const FloorTile& t, const std::tuple<int, int>& at) { return std::tie(t.z, t.x) < at; });
-      for (; tile != floor.tiles.end() && tile->z == z && tile->x <= last.x; ++tile) {
-        const glm::dvec3 place((tile->x + 0.5) * size, tile->y * size + eye, (tile->z + 0.5) * size);
-        const bool is_inside =
-            glm::all(glm::lessThanEqual(low, place)) && glm::all(glm::lessThanEqual(place, high));
-        if (!is_inside) continue;
-        std::atomic_ref<uint8_t> covered(is_covered[size_t(tile - floor.tiles.begin())]);
-        covered.store(1, std::memory_order_relaxed);
-      }
-    }
-  });
-  return is_covered;
-}
-
 // The tiles of the parts that are free, but those that only cells in solids cover.
 Floor withoutSolid(const Lattice& lattice, const Floor& floor, const std::vector<bool>& is_free, double eye,
                    std::span<const ViewCell> in_solid, std::span<const ViewCell> cells) {
-  const std::vector<uint8_t> solid = coverOf(lattice, floor, eye, in_solid);
-  const std::vector<uint8_t> free = coverOf(lattice, floor, eye, cells);
+  const std::vector<uint8_t> solid = coveredTiles(lattice, floor, eye, in_solid);
+  const std::vector<uint8_t> free = coveredTiles(lattice, floor, eye, cells);
   return tilesOf(floor, [&](uint32_t tile) {
     return is_free[floor.tiles[tile].part] && (solid[tile] == 0 || free[tile] != 0);
   });
@@ -218,14 +192,35 @@ FloorCells floorCells(const Scene& scene, const Bvh& bvh, const Lattice& lattice
   }
   result.in_solid = in_solid.size();
   result.floor = withoutSolid(lattice, floor, is_free, options.eye, in_solid, result.cells);
-  result.covered = coveredTiles(lattice, result.floor, options.eye, result.cells);
+  result.is_covered = coveredTiles(lattice, result.floor, options.eye, result.cells);
+  result.covered = uint64_t(std::ranges::count(result.is_covered, uint8_t{1}));
   if (options.progress) options.progress(1);
   return result;
 }
 
-uint64_t coveredTiles(const Lattice& lattice, const Floor& floor, double eye,
-                      std::span<const ViewCell> cells) {
-  return uint64_t(std::ranges::count(coverOf(lattice, floor, eye, cells), uint8_t{1}));
+std::vector<uint8_t> coveredTiles(const Lattice& lattice, const Floor& floor, double eye,
+                                  std::span<const ViewCell> cells) {
+  std::vector<uint8_t> is_covered(floor.tiles.size(), 0);
+  const double size = lattice.voxelSize();
+  tbb::parallel_for(size_t{0}, cells.size(), [&](size_t i) {
+    const glm::dvec3 low = cells[i].center - cells[i].size * 0.5,
+                     high = cells[i].center + cells[i].size * 0.5;
+    const glm::ivec3 first = voxelAt(lattice, low), last = voxelAt(lattice, high);
+    for (int z = first.z; z <= last.z; ++z) {
+      auto tile = std::lower_bound(
+          floor.tiles.begin(), floor.tiles.end(), std::tie(z, first.x),
+          [](const FloorTile& t, const std::tuple<int, int>& at) { return std::tie(t.z, t.x) < at; });
+      for (; tile != floor.tiles.end() && tile->z == z && tile->x <= last.x; ++tile) {
+        const glm::dvec3 place((tile->x + 0.5) * size, tile->y * size + eye, (tile->z + 0.5) * size);
+        const bool is_inside =
+            glm::all(glm::lessThanEqual(low, place)) && glm::all(glm::lessThanEqual(place, high));
+        if (!is_inside) continue;
+        std::atomic_ref<uint8_t> covered(is_covered[size_t(tile - floor.tiles.begin())]);
+        covered.store(1, std::memory_order_relaxed);
+      }
+    }
+  });
+  return is_covered;
 }
 
 }  // namespace sightline

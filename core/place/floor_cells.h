@@ -32,10 +32,11 @@ struct FloorCellOptions {
 
 struct FloorCells {
   std::vector<ViewCell> cells;
-  Floor floor;            ///< without what is in solids by free_side
-  uint64_t covered = 0;   ///< tiles of it: the eye of who stands on its middle is in a cell
-  uint64_t inset = 0;     ///< cells that are smaller, for the margin
-  uint64_t in_solid = 0;  ///< cells that were left out for free_side
+  Floor floor;                      ///< without what is in solids by free_side
+  std::vector<uint8_t> is_covered;  ///< coveredTiles
+  uint64_t covered = 0;             ///< tiles of it: the eye of who stands on its middle is in a cell
+  uint64_t inset = 0;               ///< cells that are smaller, for the margin
+  uint64_t in_solid = 0;            ///< cells that were left out for free_side
 };
 
 /// Where one walks, of all parts of the floor.
@@ -68,9 +69,9 @@ FloorOptions floorOptions(const Lattice& lattice, const FloorCellOptions& option
 FloorCells floorCells(const Scene& scene, const Bvh& bvh, const Lattice& lattice, const Floor& floor,
                       const FloorCellOptions& options);
 
-/// The tiles of the floor of which the eye of who stands on their middle is in a cell. Cells are boxes that
-/// are not turned.
-uint64_t coveredTiles(const Lattice& lattice, const Floor& floor, double eye,
-                      std::span<const ViewCell> cells);
+/// For each tile of the floor 1 if the eye of who stands on its middle is in a cell, else 0. Cells are boxes
+/// that are not turned.
+std::vector<uint8_t> coveredTiles(const Lattice& lattice, const Floor& floor, double eye,
+                                  std::span<const ViewCell> cells);
 
 }  // namespace sightline

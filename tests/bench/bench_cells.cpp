@@ -59,7 +59,8 @@ void measure(const std::string& path, double largest, double least) {
     }
     GridCounts counts;
     const std::vector<ViewCell> cells = gridCells(scene, bvh, grid_options, &counts);
-    const uint64_t covered = coveredTiles(lattice, on_floor.floor, options.eye, cells);
+    const auto covered =
+        uint64_t(std::ranges::count(coveredTiles(lattice, on_floor.floor, options.eye, cells), uint8_t{1}));
     row(fmt::format("--grid {0},2,{0}{1}", largest, is_raised ? ", raised to the floor" : ""), counts.kept,
         covered, tiles);
     row("  its places, seen from above", placesFromAbove(sceneBounds(scene), grid_options.size), covered,

@@ -82,7 +82,9 @@ TEST(CellsCommand, PlacesWhatIsReachedAndTheFloor) {
     EXPECT_LE(cell.size.x, 20);
     EXPECT_LE(cell.size.z, 20);
   }
-  run = runProgram(start + "--floor 20 --least 2 --voxel 0.5");
+  const auto picture = (folder / "floor.png").string();
+  run = runProgram(start + "--floor 20 --least 2 --voxel 0.5 --picture '" + picture + "'");
+  EXPECT_TRUE(std::filesystem::exists(picture));
   ASSERT_EQ(run.exit_code, 0) << run.output;
 
   expectLine(start + "--grid 8 --reach 0,1.5,0 --voxel 0.3", 2, "take 0.25 or 0.5");
@@ -91,6 +93,7 @@ TEST(CellsCommand, PlacesWhatIsReachedAndTheFloor) {
   expectLine(start + "--floor 20 --reach 0,500,0 --least 50", 2, "least");
   expectLine(start + "--floor 20 --eye 5", 2, "head");
   expectLine(start + "--floor nan", 2, "nan");
+  expectLine(start + "--floor 20 --picture floor.jpg", 2, ".png");
   expectLine(start + "--grid 8 --floor 8", 2, "takes one of");
   expectLine(start + "--path 0,1,0 0,1,9 --reach 0,1.5,0", 2, "--reach");
   expectLine(start + "--path 0,1,0 0,1,9 --free-side any", 2, "--free-side");

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
+#include "core/picture/floor_picture.h"
 #include "core/place/floor_cells.h"
 #include "core/place/place_cells.h"
 #include "core/scene/contained.h"
@@ -311,6 +312,43 @@ TEST(FloorCells, AreTheSameOnAnyThreads) {
   FloorCellOptions stopped = of.options;
   stopped.stop = &stop;
   EXPECT_THROW(floorCells(found.scene, bvh, lattice, found.floor, stopped), Interrupted);
+}
+
+// Right: a tile is green or red by whether it is covered, but for outlines; and there is nothing over the
+// hole.
+TEST(FloorPicture, ShowsWhatIsCovered) {
+  const Lattice lattice = latticeOf(0.125);
+  for (const FloorCase& of : floorCases()) {
+    if (of.name != "hole") continue;
+    FloorOfCase found;
+    findFloorOf(of, lattice, found);
+    FloorCellOptions options = of.options;
+    options.least = 2;  // leaves some
+    const FloorCells cells =
+        floorCells(found.scene, buildSceneTree(found.scene), lattice, found.floor, options);
+    const Image image = floorPicture(lattice, cells.floor, cells.is_covered, cells.cells, 4096);
+    const Image bare = floorPicture(lattice, cells.floor, cells.is_covered, {}, 4096);
+    int min_x = INT32_MAX, min_z = INT32_MAX;
+    for (const FloorTile& tile : cells.floor.tiles) {
+      min_x = std::min(min_x, tile.x);
+      min_z = std::min(min_z, tile.z);
+    }
+    int outlined = 0, red = 0;
+    for (size_t i = 0; i < cells.floor.tiles.size(); ++i) {
+      const FloorTile& tile = cells.floor.tiles[i];
+      const auto x = uint32_t(8 * (tile.x - min_x + 2) + 4), y = uint32_t(8 * (tile.z - min_z + 2) + 4);
+      const Rgb color = bare.at(x, y);
+      EXPECT_EQ(color.green > color.red, cells.is_covered[i] != 0);
+      outlined += image.at(x, y) != color;
+      red += color.red > color.green;
+    }
+    EXPECT_EQ(red, int(cells.floor.tiles.size() - cells.covered));
+    EXPECT_GT(red, 0);
+    EXPECT_EQ(outlined, 0);  // outlines run between tiles
+    EXPECT_NE(image.pixels, bare.pixels);
+    const auto hole_x = uint32_t(8 * (32 - min_x + 2)), hole_y = uint32_t(8 * (32 - min_z + 2));
+    EXPECT_EQ(image.at(hole_x, hole_y), image.at(0, 0));
+  }
 }
 
 TEST(FloorCells, LeaveOutSolidsByFacesWhereNothingIsReached) {

@@ -206,6 +206,37 @@ TEST(Solid, IsTheSameOnAnyThreadsAndStops) {
   EXPECT_THROW(solidParts(scene, grid, parts, InsideRule::kParity, {{}, &stop}), Interrupted);
 }
 
+// Right: the set is the surface and what is inner, of the box around the surface.
+TEST(Solid, FillsTheGrid) {
+  Scene scene;
+  addBox(scene, glm::vec3(-70.5f, 3.5f, 3.5f), glm::vec3(80.5f, 90.5f, 20.5f), false, true);
+  addBox(scene, glm::vec3(100), glm::vec3(120), false, true);
+  const VoxelGrid grid = voxelize(scene, {.lattice = latticeOf(1)});
+  const VoxelSpace outside = reach(grid, {.from_outside = true});
+  const VoxelSpace inside = reach(grid, {.seeds = {glm::dvec3(10)}});  // outside is inner
+  for (const VoxelSpace* space : {&outside, &inside}) {
+    const VoxelGrid filled = filledGrid(*space);
+    const VoxelLookup lookup(filled);
+    const VoxelBox box = boxOf(grid);
+    uint64_t count = 0;
+    for (int z = box.low.z - 2; z <= box.high.z + 2; ++z) {
+      for (int y = box.low.y - 2; y <= box.high.y + 2; ++y) {
+        for (int x = box.low.x - 2; x <= box.high.x + 2; ++x) {
+          const bool is_solid = holds(box, {x, y, z}) && space->state({x, y, z}) != VoxelState::kFree;
+          ASSERT_EQ(lookup.contains({x, y, z}), is_solid) << x << ' ' << y << ' ' << z;
+          count += is_solid;
+        }
+      }
+    }
+    EXPECT_EQ(filled.count(), count);
+    EXPECT_EQ(space->counts().inner + space->counts().surface, count);
+    for (size_t i = 0; i < filled.blocks.size(); ++i) {
+      EXPECT_FALSE(filled.blocks[i].bricks.empty());
+      EXPECT_TRUE(i == 0 || placeBefore(filled.blocks[i - 1].place, filled.blocks[i].place));
+    }
+  }
+}
+
 std::string openMessage(const Scene& scene, InsideRule rule) {
   try {
     requireClosed(scene, closedParts(scene, rule));
