@@ -107,11 +107,12 @@ class OpenClVoxelizer {
     launchUntilListsSuffice(blocks.size());
     std::vector<uint32_t> first(2 * blocks.size()), masks(blocks.size() * kMaskWords);
     std::vector<OpenRow> open(open_count_);
-    bits_.resize(size_t(8) * brick_count_);
+    const size_t words = size_t(8) * brick_count_;
+    if (bits_.size() < words) bits_.resize(words);
     context_.read(first_brick_, first.data(), first.size() * sizeof(uint32_t));
     context_.read(masks_, masks.data(), masks.size() * sizeof(uint32_t));
     if (!open.empty()) context_.read(open_, open.data(), open.size() * sizeof(OpenRow));
-    if (!bits_.empty()) context_.readFast(bricks_, bits_.data(), bits_.size() * sizeof(uint64_t));
+    if (words > 0) context_.readFast(bricks_, bits_.data(), words * sizeof(uint64_t));
     const VoxelizerClock::time_point read = VoxelizerClock::now();
     // Work items list them in any order, and families of targets twice.
     std::sort(open.begin(), open.end());
