@@ -3,6 +3,7 @@
 #ifndef SL_GLASS_CL
 #define SL_GLASS_CL
 #include "cl_kernels/stage.cl"
+#include "cl_kernels/trace_single.cl"
 
 #if SL_HAS_GLASS
 
@@ -31,20 +32,69 @@ static inline bool visitGlass(const StageRef* stage, GlassVisit visit, uint tria
   return false;
 }
 
-static inline bool visitLeaf(const StageRef* stage, GlassVisit visit, uint first, uint count, ShearedRay ray,
-                             float end) {
-  bool lacks = false;
-  for (uint i = first; i < first + count; ++i) {
-    const uint surface = stage->scene.surfaces[kSurfaceHeaderWords + i];
-    if ((surface & kSurfaceGlass) == 0) continue;
-    const Corners v = recordCorners(&stage->scene.triangles[i]);
-    const float t = intersectTriangle(ray, v.a, v.b, v.c);
-    if (!(t > 0.0f && t <= end)) continue;
-    if (!surfaceHolds(stage->scene.surfaces, surface, ray, v.a, v.b, v.c)) continue;
-    lacks |= visitGlass(stage, visit, recordId(&stage->scene.triangles[i]));
-  }
-  return lacks;
+/// Visits the triangle of a record, if it is glass that the ray meets no farther than end. v: its corners in the world;
+/// bits: kInstance... of what placed them.
+static inline bool visitTriangle(const StageRef* stage, GlassVisit visit, uint place, Corners v, uint bits, uint id,
+                                 ShearedRay ray, float end) {
+  const uint surface = stage->scene.surfaces[kSurfaceHeaderWords + place];
+  const float t = intersectTriangle(ray, v.a, v.b, v.c);
+  return t > 0.0f && t <= end &&
+         placedSurfaceHolds(stage->scene.surfaces, surface, ray, v.a, v.b, v.c, (bits & kInstanceMirrors) != 0) &&
+         visitGlass(stage, visit, id);
 }
+
+static inline bool isGlass(const StageRef* stage, uint place) {
+  return (stage->scene.surfaces[kSurfaceHeaderWords + place] & kSurfaceGlass) != 0;
+}
+
+static inline bool visitStored(const StageRef* stage, GlassVisit visit, uint place, ShearedRay ray, float end) {
+  if (!isGlass(stage, place)) return false;
+  __global const SceneTriangle* record = &stage->scene.triangles[place];
+  return visitTriangle(stage, visit, place, recordCorners(record), 0u, recordId(record), ray, end);
+}
+
+#define SL_WALK walkGlassTree
+#define SL_WALK_PARAM
+#define SL_VISIT(i) visitStored(stage, visit, i, ray, end)
+#include "cl_kernels/glass_walk.inl"
+#undef SL_WALK
+#undef SL_WALK_PARAM
+#undef SL_VISIT
+
+#if SL_INSTANCES
+static inline bool visitPlaced(const StageRef* stage, GlassVisit visit, __global const InstanceRecord* instance,
+                               uint place, ShearedRay ray, float end) {
+  if (!isGlass(stage, place)) return false;
+  __global const SceneTriangle* record = &stage->scene.triangles[place];
+  return visitTriangle(stage, visit, place, placedCorners(instance, record), instance->roots.z,
+                       instance->ids.x + recordId(record), ray, end);
+}
+
+#define SL_WALK walkGlassMesh
+#define SL_WALK_PARAM , __global const InstanceRecord* instance
+#define SL_VISIT(i) visitPlaced(stage, visit, instance, i, ray, end)
+#include "cl_kernels/glass_walk.inl"
+#undef SL_WALK
+#undef SL_WALK_PARAM
+#undef SL_VISIT
+
+static inline bool walkGlassInstance(const StageRef* stage, GlassVisit visit, uint number, Ray world, BoxRay box_ray,
+                                     ShearedRay ray, float end) {
+  __global const InstanceRecord* instance = &stage->scene.instances[number];
+  const uint root = instance->roots.x;
+  if ((instance->roots.z & kInstanceInPlace) != 0) return walkGlassTree(stage, visit, root, box_ray, ray, end);
+  const BoxRay inner = boxRayIn(stage->scene, instance, world);
+  return walkGlassMesh(stage, visit, root, inner, ray, end, instance);
+}
+
+#define SL_WALK walkGlassInstances
+#define SL_WALK_PARAM , Ray world
+#define SL_VISIT(i) walkGlassInstance(stage, visit, stage->scene.instance_order[i], world, box_ray, ray, end)
+#include "cl_kernels/glass_walk.inl"
+#undef SL_WALK
+#undef SL_WALK_PARAM
+#undef SL_VISIT
+#endif
 
 /// Visits the glass that the ray meets no farther than its hit; some perhaps several times. true: SL_GLASS_TEST found
 /// some that the set lacks.
@@ -52,33 +102,11 @@ static bool walkGlass(const StageRef* stage, GlassVisit visit, Ray ray, Hit hit)
   if (!hasDirection(ray)) return false;
   const float end = hit.triangle == kNoTriangle ? as_float(0x7f800000u) : hit.t;
   const BoxRay box_ray = boxRay(ray, stage->scene.reach);
-  const ShearedRay sheared = shearRay(ray);
-  uint stack[SL_MAX_DEPTH + 1];
-  uint size = 0;
-  uint place = 0;
-  bool lacks = false;
-  for (;;) {
-    const BvhNode2 node = stage->scene.nodes[place];
-    uint next = kNoTriangle;
-    for (uint i = 0; i < 2; ++i) {
-      const float2 range =
-          i == 0 ? intersectBox(box_ray, vec3(node.x.x, node.y.x, node.z.x), vec3(node.x.y, node.y.y, node.z.y))
-                 : intersectBox(box_ray, vec3(node.x.z, node.y.z, node.z.z), vec3(node.x.w, node.y.w, node.z.w));
-      if (!(range.x <= min(range.y, end)) || node.child[i] == kNoTriangle) continue;
-      if (node.count[i] > 0) {
-        lacks |= visitLeaf(stage, visit, node.child[i], node.count[i], sheared, end);
-      } else if (next == kNoTriangle) {
-        next = node.child[i];
-      } else {
-        stack[size++] = node.child[i];
-      }
-    }
-    if (next == kNoTriangle) {
-      if (size == 0) return lacks;
-      next = stack[--size];
-    }
-    place = next;
-  }
+#if SL_INSTANCES
+  return walkGlassInstances(stage, visit, stage->scene.root, box_ray, shearRay(ray), end, ray);
+#else
+  return walkGlassTree(stage, visit, 0u, box_ray, shearRay(ray), end);
+#endif
 }
 
 static inline void insertGlass(const StageRef* stage, Ray ray, Hit hit, uint index) {

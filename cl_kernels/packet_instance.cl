@@ -17,7 +17,7 @@ static inline void intersectInMesh8(SceneRef scene, __global const InstanceRecor
         ((instance->place.origin + v[0] * instance->place.x) + v[1] * instance->place.y) + v[2] * instance->place.z;
     vstore3(placed.xyz, mirrors && corner != 0 ? 3 - corner : corner, vertices);
   }
-  intersectPlaced8(scene, place, vertices, instance->ids.x + scene.triangles[place].id, p);
+  intersectPlaced8(scene, place, vertices, instance->roots.z, instance->ids.x + scene.triangles[place].id, p);
 }
 
 #define SL_WALK walkMesh8
@@ -86,6 +86,7 @@ static void enterInstance8(SceneRef scene, const RayPacket* rays, uint number, P
     walkMesh8(scene, instance->roots.x, &inner, instance);
     p->t = takes_part ? inner.t : p->t;
     p->triangle = takes_part ? inner.triangle : p->triangle;
+    p->glass |= inner.glass;
   }
 }
 
@@ -93,6 +94,9 @@ static void enterInstance8(SceneRef scene, const RayPacket* rays, uint number, P
 #define SL_WALK_PARAM , const RayPacket* rays
 #define SL_VISIT(i) enterInstance8(scene, rays, scene.instance_order[i], p)
 #include "cl_kernels/packet_walk.inl"
+#undef SL_WALK
+#undef SL_WALK_PARAM
+#undef SL_VISIT
 
 static inline void tracePacket(SceneRef scene, const RayPacket* rays, Packet* p) {
   walkInstances8(scene, scene.root, p, rays);

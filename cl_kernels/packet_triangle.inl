@@ -1,7 +1,8 @@
 // Eight rays against the triangle of a record: whether they hit it, and whether that counts. Included for each address
 // space that vertices lie in: SL_INTERSECT names the function, SL_VERTICES the space. place: of the record; vertices: x,
-// y, z of the three, in the world.
-static inline void SL_INTERSECT(SceneRef scene, uint place, SL_VERTICES const float* vertices, uint id, Packet* p) {
+// y, z of the three, in the world; bits: kInstance... of what placed them.
+static inline void SL_INTERSECT(SceneRef scene, uint place, SL_VERTICES const float* vertices, uint bits, uint id,
+                                Packet* p) {
   float8 az = vertices[p->axis_z] - p->origin_z;
   float8 ax = (vertices[p->axis_x] - p->origin_x) - p->shear_x * az;
   float8 ay = (vertices[p->axis_y] - p->origin_y) - p->shear_y * az;
@@ -45,8 +46,12 @@ static inline void SL_INTERSECT(SceneRef scene, uint place, SL_VERTICES const fl
     return;
   }
   if (surface != 0) {
-    const int8 bits = (int8)(1, 2, 4, 8, 16, 32, 64, 128);
-    hit = hit & (((int8)(int)lanesThatHold(scene, surface, vertices, p, laneBits(hit)) & bits) != 0);
+    Corners corners;
+    corners.a = vec3(vertices[0], vertices[1], vertices[2]);
+    corners.b = vec3(vertices[3], vertices[4], vertices[5]);
+    corners.c = vec3(vertices[6], vertices[7], vertices[8]);
+    const uint holding = lanesThatHold(scene, surface, corners, (bits & kInstanceMirrors) != 0, p, laneBits(hit));
+    hit = hit & (((int8)(int)holding & (int8)(1, 2, 4, 8, 16, 32, 64, 128)) != 0);
   }
 #endif
   p->t = hit ? t : p->t;

@@ -8,7 +8,7 @@
 #include "core/shared/triangle.h"
 
 // What the scene needs, by the host (core/device/opencl/opencl_scene.h): SL_HAS_SURFACES where there are holes, glass
-// or sides, SL_HAS_GLASS where there is glass; SL_INSTANCES where there are instances, and none of the others.
+// or sides, SL_HAS_GLASS where there is glass; SL_INSTANCES where there are instances.
 
 /// A triangle as this program reads it.
 #if SL_PACKET > 1
@@ -33,7 +33,7 @@ typedef struct SceneRef {
 } SceneRef;
 
 /// Parameters of a kernel that traces, and the SceneRef made of them. The host passes, in this order, the node buffer,
-/// the triangle buffer, the reach, and, where there are any, the surfaces, or the instances (launchOnScene,
+/// the triangle buffer, the reach, and, where there are any, the surfaces and the instances (launchOnScene,
 /// core/device/opencl/opencl_scene.h).
 #if SL_HAS_SURFACES
 #define SL_SURFACES_ARG , __global const uint *restrict scene_surfaces

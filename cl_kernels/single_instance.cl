@@ -18,8 +18,8 @@ static inline void intersectLeafIn(SceneRef scene, __global const InstanceRecord
   const uint count = (leaf >> kLeafCountShift & 7u) + 1;
   for (uint i = 0; i < count; ++i) {
     __global const SceneTriangle* record = &scene.triangles[first + i];
-    intersectCorners(scene, first + i, placedCorners(instance, record), instance->ids.x + recordId(record), ray, best,
-                     glass);
+    intersectCorners(scene, first + i, placedCorners(instance, record), instance->roots.z,
+                     instance->ids.x + recordId(record), ray, best, glass);
   }
 }
 

@@ -40,12 +40,11 @@ static inline ShearedRay shearedLane(const Packet* p, uint lane) {
 }
 
 /// Those of the lanes, a bit each, that meet something where they hit the triangle: lane by lane.
-static inline uint lanesThatHold(SceneRef scene, uint surface, __global const float* v, const Packet* p, uint lanes) {
+static inline uint lanesThatHold(SceneRef scene, uint surface, Corners v, bool mirrored, const Packet* p, uint lanes) {
   uint holding = 0;
   for (uint left = lanes; left != 0; left &= left - 1) {
     const uint lane = slLowestBit(left);
-    if (surfaceHolds(scene.surfaces, surface, shearedLane(p, lane), vec3(v[0], v[1], v[2]), vec3(v[3], v[4], v[5]),
-                     vec3(v[6], v[7], v[8]))) {
+    if (placedSurfaceHolds(scene.surfaces, surface, shearedLane(p, lane), v.a, v.b, v.c, mirrored)) {
       holding |= 1u << lane;
     }
   }
@@ -89,7 +88,7 @@ static inline float8 inverseSlope(float8 direction, float8 smallest) {
 
 /// A triangle that is stored where it is.
 static inline void intersectRecord8(SceneRef scene, uint place, Packet* p) {
-  intersectStored8(scene, place, scene.triangles[place].vertices, scene.triangles[place].id, p);
+  intersectStored8(scene, place, scene.triangles[place].vertices, 0u, scene.triangles[place].id, p);
 }
 
 #define SL_WALK walkTriangles8

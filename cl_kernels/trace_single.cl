@@ -7,8 +7,9 @@
 #include "cl_kernels/scene.cl"
 
 /// What a hit on the triangle of a record counts for: the best hit, if it is nearer, or as near with a lower id.
-/// place: of the record; v: its corners in the world. glass: set where the ray meets glass before the best hit so far.
-static inline void intersectCorners(SceneRef scene, uint place, Corners v, uint id, ShearedRay ray, Hit* best,
+/// place: of the record; v: its corners in the world; bits: kInstance... of what placed them. glass: set where the ray
+/// meets glass before the best hit so far.
+static inline void intersectCorners(SceneRef scene, uint place, Corners v, uint bits, uint id, ShearedRay ray, Hit* best,
                                     bool* glass) {
   const float t = intersectTriangle(ray, v.a, v.b, v.c);
 #if SL_HAS_SURFACES
@@ -19,7 +20,7 @@ static inline void intersectCorners(SceneRef scene, uint place, Corners v, uint 
     return;
   }
   if (t == best->t && id >= best->triangle) return;
-  if (!surfaceHolds(scene.surfaces, surface, ray, v.a, v.b, v.c)) return;
+  if (!placedSurfaceHolds(scene.surfaces, surface, ray, v.a, v.b, v.c, (bits & kInstanceMirrors) != 0)) return;
 #else
   if (!(t > 0.0f && (t < best->t || (t == best->t && id < best->triangle)))) return;
 #endif
@@ -55,7 +56,7 @@ static inline void intersectLeaf(SceneRef scene, uint leaf, ShearedRay ray, Hit*
   const uint count = (leaf >> kLeafCountShift & 7u) + 1;
   for (uint i = 0; i < count; ++i) {
     __global const SceneTriangle* record = &scene.triangles[first + i];
-    intersectCorners(scene, first + i, recordCorners(record), recordId(record), ray, best, glass);
+    intersectCorners(scene, first + i, recordCorners(record), 0u, recordId(record), ray, best, glass);
   }
 }
 

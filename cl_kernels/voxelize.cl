@@ -1,10 +1,16 @@
-// Which voxels of blocks of 64 x 64 x 64 meet triangles: a work group a block. Rows that rounding leaves open are
-// listed for the host. One program of its own: bakes need not compile it.
+// Which voxels of blocks of 64 x 64 x 64 meet triangles: a work group a half of a block, the lower or the upper one,
+// whose bits are in local memory. Rows that rounding leaves open are listed for the host. One program of its own:
+// bakes need not compile it.
 #include "core/shared/voxel_planes.h"
 
-// Rows of a triangle's box in a block: with more, the whole group works on it.
+// Of voxels in a half of a block, and what that makes.
+#define LAYERS 32
+#define BRICKS (64 * LAYERS / 8)
+#define MASK_WORDS (BRICKS / 32)
+// Rows of a triangle's box in a half: with more, the whole group works on it.
 #define ROWS_ALONE 24
 #define MOST_GROUP 256
+#define PLANES_A_TIME 8
 #define ALL_ROWS 0xffffffffu
 
 // Words of `counters`: how many were needed, also beyond capacity.
@@ -16,11 +22,18 @@ typedef struct Target {
   volatile __global uint* counters;
   __global uint2* open;
   uint open_capacity;
+  uint first_row;  // of the half in its block
+  __global const float* positions;
+  __global const uint* triangles;
+  __global const uint* pairs;
+  float voxels_a_unit;
+  VoxelPlace base;
 } Target;
 
 static inline void listOpen(const Target* target, uint pair, uint row) {
   const uint place = atomic_inc(&target->counters[COUNT_OPEN]);
-  if (place < target->open_capacity) target->open[place] = (uint2)(pair, row);
+  if (place < target->open_capacity)
+    target->open[place] = (uint2)(pair, row == ALL_ROWS ? ALL_ROWS : target->first_row + row);
 }
 
 static inline void setRow(const Target* target, int y, int z, int low, int high) {
@@ -31,68 +44,114 @@ static inline void setRow(const Target* target, int y, int z, int low, int high)
   if ((uint)(bits >> 32) != 0) atomic_or(&target->bits[word + 1], (uint)(bits >> 32));
 }
 
-static inline uint rowsOf(VoxelTriangle t) {
-  if (t.low.x > t.high.x || t.low.y > t.high.y || t.low.z > t.high.z) return 0;
-  return (uint)((t.high.y - t.low.y + 1) * (t.high.z - t.low.z + 1));
+static inline RealPoint cornerAt(const Target* target, ulong corner) {
+  const SL_REAL scale = slReal(target->voxels_a_unit);
+  __global const float* p = target->positions + 3 * (ulong)target->triangles[corner];
+  return realPoint(slReal(p[0]) * scale, slReal(p[1]) * scale, slReal(p[2]) * scale);
 }
 
-// Every `lanes`-th row from `lane` on.
-static inline void setRows(const Target* target, const VoxelTriangle* t, const VoxelPlanes* planes, uint pair, uint lane,
-                           uint lanes) {
-  if (planes->empty) return;
-  if (planes->open) {
-    if (lane == 0) listOpen(target, pair, ALL_ROWS);
-    return;
-  }
-  const uint rows = rowsOf(*t);
-  const uint width = (uint)(t->high.y - t->low.y + 1);
-  for (uint row = lane; row < rows; row += lanes) {
-    const int y = t->low.y + (int)(row % width);
-    const int z = t->low.z + (int)(row / width);
-    const VoxelRun run = rowOf(*planes, *t, y, z);
-    if (run.open) {
-      listOpen(target, pair, (uint)(y + 64 * z));
-    } else {
-      setRow(target, y, z, run.low, run.high);
-    }
-  }
+static inline VoxelTriangle triangleAt(const Target* target, uint pair) {
+  const ulong corner = 3 * (ulong)target->pairs[pair];
+  return voxelTriangle(cornerAt(target, corner), cornerAt(target, corner + 1), cornerAt(target, corner + 2),
+                       target->base, LAYERS);
 }
 
-static inline void setTriangle(const Target* target, const VoxelTriangle* t, uint pair, uint lane, uint lanes) {
+// A triangle's half spaces in a block, or those of one direction of its targets, and where its rows are.
+typedef struct Planes {
   VoxelPlanes planes;
+  SL_REAL inverse[SL_MOST_VOXEL_PLANES];
+  uint pair;
+  uint family;
+} Planes;
+
+static inline uint rowsOf(VoxelPlace low, VoxelPlace high) {
+  if (low.x > high.x || low.y > high.y || low.z > high.z) return 0;
+  return (uint)((high.y - low.y + 1) * (high.z - low.z + 1));
+}
+
 #if SL_SEPARATION == 0
-  planes.count = 0;
-  planes.empty = false;
-  planes.open = false;
-  if (!t->straight) planes = meetingPlanes(*t);
-  setRows(target, t, &planes, pair, lane, lanes);
+#define FAMILIES 1
+#elif SL_SEPARATION == 6
+#define FAMILIES 3
 #else
-  for (int family = 0; family < (SL_SEPARATION == 6 ? 3 : 4); ++family) {
-    AxisSigns along = axisAlong(family);
+#define FAMILIES 4
+#endif
+
+static inline AxisSigns alongOf(uint family) {
+  AxisSigns along = axisAlong((int)family);
 #if SL_SEPARATION == 26
-    along.x = (family & 1) != 0 ? -1 : 1;
-    along.y = (family & 2) != 0 ? -1 : 1;
-    along.z = 1;
+  along.x = (family & 1u) != 0 ? -1 : 1;
+  along.y = (family & 2u) != 0 ? -1 : 1;
+  along.z = 1;
 #endif
-    planes = targetPlanes(*t, along);
-    setRows(target, t, &planes, pair, lane, lanes);
+  return along;
+}
+
+static inline Planes planesOf(const VoxelTriangle* t, uint pair, uint family) {
+  Planes p;
+#if SL_SEPARATION == 0
+  p.planes.count = 0;
+  p.planes.empty = false;
+  p.planes.open = false;
+  p.planes.low = t->low;
+  p.planes.high = t->high;
+  if (!t->straight) p.planes = meetingPlanes(*t);
+#else
+  p.planes = targetPlanes(*t, alongOf(family));
+#endif
+  for (int i = 0; i < p.planes.count; ++i)
+    p.inverse[i] = inverseOf(p.planes.at[i].factor.x, p.planes.at[i].rises.x);
+  p.pair = pair;
+  p.family = family;
+  return p;
+}
+
+// A row that bounds on rounding leave open, by numbers that need none where they are such. Slow, and rare but where
+// corners are on the lattice.
+static inline VoxelRun openRow(const Target* target, uint pair, uint family, int y, int z) {
+  const VoxelTriangle t = triangleAt(target, pair);
+  const Planes p = planesOf(&t, pair, family);
+  VoxelRun run = {p.planes.low.x, p.planes.high.x, false};
+  bool open = false;
+  for (int i = 0; i < p.planes.count && run.low <= run.high; ++i) {
+    run.open = false;
+    run = narrowRow(run, p.planes.at[i], p.inverse[i], y, z);
+    if (run.open) {
+      run = decideRow(run, t, p.planes.at[i], p.planes.source[i], SL_SEPARATION == 0, alongOf(family), p.inverse[i], y,
+                      z);
+    }
+    open = open || run.open;
   }
-#endif
+  run.open = open;
+  return run;
 }
 
-static inline RealPoint cornerAt(__global const float* positions, uint vertex, float voxels_a_unit) {
-  const SL_REAL scale = slReal(voxels_a_unit);
-  return realPoint(slReal(positions[3 * (ulong)vertex]) * scale, slReal(positions[3 * (ulong)vertex + 1]) * scale,
-                   slReal(positions[3 * (ulong)vertex + 2]) * scale);
-}
-
-static inline VoxelTriangle triangleAt(__global const float* positions, __global const uint* triangles, uint id,
-                                       float voxels_a_unit, VoxelPlace base) {
-  const RealPoint a = cornerAt(positions, triangles[3 * (ulong)id], voxels_a_unit);
-  const RealPoint b = cornerAt(positions, triangles[3 * (ulong)id + 1], voxels_a_unit);
-  const RealPoint c = cornerAt(positions, triangles[3 * (ulong)id + 2], voxels_a_unit);
-  return voxelTriangle(a, b, c, base);
-}
+// Every `lanes`-th row from `lane` on. OpenCL 1.2 has no pointers to memory of any kind: a function a kind.
+#define SET_ROWS(NAME, MEMORY)                                                                        \
+  static inline void NAME(const Target* target, MEMORY const Planes* p, uint lane, uint lanes) {      \
+    if (p->planes.empty) return;                                                                      \
+    if (p->planes.open) {                                                                             \
+      if (lane == 0) listOpen(target, p->pair, ALL_ROWS);                                             \
+      return;                                                                                         \
+    }                                                                                                 \
+    const uint rows = rowsOf(p->planes.low, p->planes.high);                                                        \
+    const uint width = (uint)(p->planes.high.y - p->planes.low.y + 1);                                              \
+    for (uint row = lane; row < rows; row += lanes) {                                                 \
+      const int y = p->planes.low.y + (int)(row % width);                                                    \
+      const int z = p->planes.low.z + (int)(row / width);                                                    \
+      VoxelRun run = {p->planes.low.x, p->planes.high.x, false};                                                    \
+      for (int i = 0; i < p->planes.count && run.low <= run.high; ++i)                                \
+        run = narrowRow(run, p->planes.at[i], p->inverse[i], y, z);                                   \
+      if (run.open && run.low <= run.high) run = openRow(target, p->pair, p->family, y, z);           \
+      if (run.open && run.low <= run.high) {                                                          \
+        listOpen(target, p->pair, (uint)(y + 64 * z));                                                \
+      } else {                                                                                        \
+        setRow(target, y, z, run.low, run.high);                                                      \
+      }                                                                                               \
+    }                                                                                                 \
+  }
+SET_ROWS(setRowsAlone, __private)
+SET_ROWS(setRowsTogether, __local)
 
 // Eight rows' bytes: word z of brick `brick` (core/voxel/voxel_grid.h).
 static inline ulong brickWord(const Target* target, uint brick, uint z) {
@@ -111,44 +170,59 @@ __kernel void voxelizeBlocks(__global const float* positions, __global const uin
                              uint brick_capacity, uint open_capacity, __global ulong* bricks,
                              __global uint* first_brick, __global uint* brick_masks, __global uint2* open,
                              volatile __global uint* counters) {
-  __local uint bits[2 * 64 * 64];
+  __local uint bits[2 * 64 * LAYERS];
   __local uint large[MOST_GROUP];
   __local uint large_count;
-  __local uint mask[16];
+  __local Planes together[PLANES_A_TIME];
+  __local uint mask[MASK_WORDS];
   __local uint brick_base;
   const uint lane = (uint)get_local_id(0);
   const uint lanes = (uint)get_local_size(0);
-  const uint block = (uint)get_group_id(0);
-  const Target target = {bits, counters, open, open_capacity};
-  for (uint i = lane; i < 2 * 64 * 64; i += lanes) bits[i] = 0;
-  for (uint i = lane; i < 16; i += lanes) mask[i] = 0;
-  const VoxelPlace base = {64 * places[block].x, 64 * places[block].y, 64 * places[block].z};
+  const uint half_block = (uint)get_group_id(0);
+  const uint block = half_block / 2;
+  const VoxelPlace base = {64 * places[block].x, 64 * places[block].y,
+                           64 * places[block].z + LAYERS * (int)(half_block % 2)};
+  const Target target = {bits,      counters,  open,  open_capacity, 64 * LAYERS * (half_block % 2),
+                         positions, triangles, pairs, voxels_a_unit, base};
+  for (uint i = lane; i < 2 * 64 * LAYERS; i += lanes) bits[i] = 0;
+  for (uint i = lane; i < MASK_WORDS; i += lanes) mask[i] = 0;
   const uint end = first_pair[block + 1];
   for (uint begin = first_pair[block]; begin < end; begin += lanes) {
     if (lane == 0) large_count = 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     const uint pair = begin + lane;
     if (pair < end) {
-      const VoxelTriangle t = triangleAt(positions, triangles, pairs[pair], voxels_a_unit, base);
+      const VoxelTriangle t = triangleAt(&target, pair);
+      const uint rows = rowsOf(t.low, t.high);
       // An open normal matters only where the triangle's box alone does not tell.
       if (t.open && (SL_SEPARATION != 0 || !t.straight)) {
         listOpen(&target, pair, ALL_ROWS);
-      } else if (rowsOf(t) > ROWS_ALONE) {
+      } else if (rows > ROWS_ALONE) {
         large[atomic_inc(&large_count)] = pair;
-      } else {
-        setTriangle(&target, &t, pair, 0, 1);
+      } else if (rows > 0) {
+        for (uint family = 0; family < FAMILIES; ++family) {
+          const Planes p = planesOf(&t, pair, family);
+          setRowsAlone(&target, &p, 0, 1);
+        }
       }
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    const uint count = large_count;
-    for (uint i = 0; i < count; ++i) {
-      const VoxelTriangle t = triangleAt(positions, triangles, pairs[large[i]], voxels_a_unit, base);
-      setTriangle(&target, &t, large[i], lane, lanes);
+    const uint count = FAMILIES * large_count;
+    barrier(CLK_LOCAL_MEM_FENCE);  // before the next of them begins
+    for (uint first = 0; first < count; first += PLANES_A_TIME) {
+      const uint now = min(count - first, (uint)PLANES_A_TIME);
+      for (uint i = lane; i < now; i += lanes) {
+        const uint large_pair = large[(first + i) / FAMILIES];
+        const VoxelTriangle t = triangleAt(&target, large_pair);
+        together[i] = planesOf(&t, large_pair, (first + i) % FAMILIES);
+      }
+      barrier(CLK_LOCAL_MEM_FENCE);
+      for (uint i = 0; i < now; ++i) setRowsTogether(&target, &together[i], lane, lanes);
+      barrier(CLK_LOCAL_MEM_FENCE);
     }
-    barrier(CLK_LOCAL_MEM_FENCE);
   }
   barrier(CLK_LOCAL_MEM_FENCE);
-  for (uint brick = lane; brick < 512; brick += lanes) {
+  for (uint brick = lane; brick < BRICKS; brick += lanes) {
     ulong any = 0;
     for (uint z = 0; z < 8; ++z) any |= brickWord(&target, brick, z);
     if (any != 0) atomic_or(&mask[brick >> 5], 1u << (brick & 31u));
@@ -156,13 +230,13 @@ __kernel void voxelizeBlocks(__global const float* positions, __global const uin
   barrier(CLK_LOCAL_MEM_FENCE);
   if (lane == 0) {
     uint count = 0;
-    for (uint i = 0; i < 16; ++i) count += popcount(mask[i]);
+    for (uint i = 0; i < MASK_WORDS; ++i) count += popcount(mask[i]);
     brick_base = atomic_add(&counters[COUNT_BRICKS], count);
-    first_brick[block] = brick_base;
+    first_brick[half_block] = brick_base;
   }
-  for (uint i = lane; i < 16; i += lanes) brick_masks[16 * block + i] = mask[i];
+  for (uint i = lane; i < MASK_WORDS; i += lanes) brick_masks[MASK_WORDS * half_block + i] = mask[i];
   barrier(CLK_LOCAL_MEM_FENCE);
-  for (uint brick = lane; brick < 512; brick += lanes) {
+  for (uint brick = lane; brick < BRICKS; brick += lanes) {
     const uint word = brick >> 5;
     if ((mask[word] >> (brick & 31u) & 1u) == 0) continue;
     uint place = brick_base + popcount(mask[word] & ((1u << (brick & 31u)) - 1u));

@@ -10,8 +10,12 @@ Ray rayOfCandidate() {
   return Ray(vec4(gl_WorldRayOriginEXT, 0.0f), vec4(gl_WorldRayDirectionEXT, 0.0f));
 }
 
+uint partOfCandidate() {
+  return uint(gl_InstanceCustomIndexEXT);
+}
+
 uint leafOfCandidate() {
-  return leafOf(uint(gl_InstanceCustomIndexEXT), uint(gl_PrimitiveID));
+  return leafOf(partOfCandidate(), uint(gl_PrimitiveID));
 }
 
 #endif

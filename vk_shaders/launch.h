@@ -18,6 +18,7 @@ SL_STRUCT(VulkanLaunch) {
   uint64 tlas;         ///< acceleration structure
   uint64 part_starts;  ///< uint[]: first leaf of each instance in the top-level structure
   uint64 part_ids;     ///< uint[]: what is added to the ids of its leaves
+  uint64 part_places;  ///< uint[]: the instance that places them; kNoTriangle: they are in place
   uint64 instances;    ///< InstanceRecord[] by id
   uint64 leaf_ids;     ///< uint[]: leaf -> triangle id
   uint64 corners;      ///< float[9] a leaf

@@ -78,6 +78,10 @@ uint leafOf(uint part, uint primitive) {
   return Buffer_uint(SL_THE_LAUNCH.part_starts).at[part] + primitive;
 }
 
+uint idOfLeaf(uint leaf, uint part) {
+  return Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[leaf] + Buffer_uint(SL_THE_LAUNCH.part_ids).at[part];
+}
+
 /// Corner 0, 1 or 2 of the triangle in a leaf.
 vec3 leafCorner(uint leaf, uint corner) {
   Floats corners = Floats(SL_THE_LAUNCH.corners + uint64(kCornerBytes) * leaf);

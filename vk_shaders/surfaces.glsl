@@ -12,10 +12,17 @@ bool isGlass(uint leaf) {
   return (surfaceOfLeaf(leaf) & kSurfaceGlass) != 0u;
 }
 
-/// Whether a ray that the driver says hits the leaf's triangle meets something there.
-bool leafHolds(Ray ray, uint leaf) {
-  return surfaceHolds(kTheSurfaces, surfaceOfLeaf(leaf), shearRay(ray), leafCorner(leaf, 0u), leafCorner(leaf, 1u),
-                      leafCorner(leaf, 2u));
+/// Whether a ray that the driver says hits the leaf's triangle in a part meets something there.
+bool leafHolds(Ray ray, uint leaf, uint part) {
+  Corners v = Corners(leafCorner(leaf, 0u), leafCorner(leaf, 1u), leafCorner(leaf, 2u));
+  uint place = SL_THE_LAUNCH.instance_count == 0u ? kNoTriangle : Buffer_uint(SL_THE_LAUNCH.part_places).at[part];
+  bool mirrored = false;
+  if (place != kNoTriangle) {
+    InstanceRecord instance = Buffer_InstanceRecord(SL_THE_LAUNCH.instances).at[place];
+    v = placeCorners(instance.place, instance.roots.z, v.a, v.b, v.c);
+    mirrored = (instance.roots.z & kInstanceMirrors) != 0u;
+  }
+  return placedSurfaceHolds(kTheSurfaces, surfaceOfLeaf(leaf), shearRay(ray), v.a, v.b, v.c, mirrored);
 }
 
 #if SL_HAS_GLASS
@@ -42,9 +49,8 @@ bool visitGlass(uint action, uint index, uint triangle) {
 
 /// Of a walk over glass that the driver says the ray meets in a leaf at t: visits it if it is no farther than the
 /// walk's end and holds. true: the set lacks it.
-bool visitLeaf(uint action, uint index, Ray ray, uint leaf, float t, float end) {
-  return isGlass(leaf) && t <= end && leafHolds(ray, leaf) &&
-         visitGlass(action, index, Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[leaf]);
+bool visitLeaf(uint action, uint index, Ray ray, uint leaf, uint part, float t, float end) {
+  return isGlass(leaf) && t <= end && leafHolds(ray, leaf, part) && visitGlass(action, index, idOfLeaf(leaf, part));
 }
 #endif
 

@@ -43,11 +43,11 @@ LeafHit traceNearest(Ray ray) {
                         0.0f, ray.direction.xyz, kFarthest);
   while (rayQueryProceedEXT(query)) {
 #if SL_HAS_SURFACES
-    uint leaf = leafOf(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
-                       rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+    uint met_part = rayQueryGetIntersectionInstanceCustomIndexEXT(query, false);
+    uint leaf = leafOf(met_part, rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
     if (isGlass(leaf)) {
       met_glass = true;
-    } else if (leafHolds(ray, leaf)) {
+    } else if (leafHolds(ray, leaf, met_part)) {
       rayQueryConfirmIntersectionEXT(query);
     }
 #endif
@@ -68,9 +68,9 @@ bool traceGlass(uint action, uint index, Ray ray, float end, float beyond) {
   rayQueryInitializeEXT(query, accelerationStructureEXT(SL_THE_LAUNCH.tlas), gl_RayFlagsCullOpaqueEXT, 0xffu,
                         ray.origin.xyz, 0.0f, ray.direction.xyz, beyond);
   while (rayQueryProceedEXT(query)) {
-    uint leaf = leafOf(rayQueryGetIntersectionInstanceCustomIndexEXT(query, false),
-                       rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
-    if (visitLeaf(action, index, ray, leaf, rayQueryGetIntersectionTEXT(query, false), end)) lacks = true;
+    uint part = rayQueryGetIntersectionInstanceCustomIndexEXT(query, false);
+    uint leaf = leafOf(part, rayQueryGetIntersectionPrimitiveIndexEXT(query, false));
+    if (visitLeaf(action, index, ray, leaf, part, rayQueryGetIntersectionTEXT(query, false), end)) lacks = true;
   }
   return lacks;
 }
@@ -119,7 +119,7 @@ LeafHit nearestHit(Ray ray) {
 
 uint triangleOf(LeafHit hit) {
   if (hit.leaf == kNoTriangle) return kNoTriangle;
-  return Buffer_uint(SL_THE_LAUNCH.leaf_ids).at[hit.leaf] + Buffer_uint(SL_THE_LAUNCH.part_ids).at[hit.part];
+  return idOfLeaf(hit.leaf, hit.part);
 }
 
 /// Nearest hit of a ray, by triangle; t of a miss is 0.

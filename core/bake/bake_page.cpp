@@ -338,7 +338,7 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
   addLeaks(html, report);
   addDoors(html, report);
   addGrowth(html, report, page.curves);
-  addPictures(html, page.pictures);
+  addPictures(html, report, page.pictures);
   addStages(html, report, page.curves);
   html.section("Parameters");
   html.facts(parameterFacts(report.params));

@@ -81,7 +81,7 @@ SceneSummary summarize(const Scene& scene, const std::string& name, uint64_t has
           scene.single_sided_triangles,
           scene.hidden_nodes,
           scene.opaque_mask_triangles,
-          countSurfaces(scene.surfaces),
+          countSurfaces(scene),
           scene.warnings,
           scene.offset,
           scene.instances.size(),

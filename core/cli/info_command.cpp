@@ -97,7 +97,7 @@ void showScene(const std::filesystem::path& file, const SceneLoadOptions& option
   if (scene.single_sided_triangles != 0) {
     row("single-sided", fmt::format("{} triangles", scene.single_sided_triangles));
   }
-  const SurfaceCounts surfaces = countSurfaces(scene.surfaces);
+  const SurfaceCounts surfaces = countSurfaces(scene);
   if (!scene.surfaces.empty()) {
     row("surfaces", fmt::format("{} triangles with holes, {} seen through, {} not there from behind",
                                 surfaces.masked, surfaces.glass, surfaces.front_only));
@@ -173,7 +173,11 @@ void showVoxels(const std::filesystem::path& file) {
   const double size = head.lattice.voxelSize();
   row("bounds", farPoint(glm::dvec3(box.low) * size + head.offset) + " to " +
                     farPoint(glm::dvec3(box.high + 1) * size + head.offset));
-  row("triangles", head.has_triangles ? "ids in each block" : "no ids");
+  row("voxels are", head.separation == Separation::kConservative ? "all that a triangle meets"
+                    : head.separation == Separation::k26         ? "those of a 26-separating set"
+                                                                 : "those of a 6-separating set");
+  row("blocks have", fmt::format("{}{}{}", head.has_triangles ? "ids of triangles" : "no ids",
+                                 head.has_normals ? ", normals" : "", head.has_objects ? ", objects" : ""));
   for (size_t level = 0; level < voxels.levels.size(); ++level) {
     const VoxelGrid& grid = voxels.levels[level];
     row(level == 0 ? "levels" : "",

@@ -57,7 +57,7 @@ void run(const SceneArguments& arguments) {
              scene.triangleCount(), scene.vertexCount(), counted(scene.objects.size(), "object"), size.x,
              size.y, size.z);
   if (!scene.surfaces.empty()) {
-    const SurfaceCounts counts = countSurfaces(scene.surfaces);
+    const SurfaceCounts counts = countSurfaces(scene);
     fmt::print("{}: {} triangles have holes, {} are glass\n", arguments.output, counts.masked, counts.glass);
   }
   if (scene.hasInstances()) {

@@ -1,15 +1,20 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/load_options.h"
+#include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
 #include "core/cli/share_line.h"
@@ -20,17 +25,45 @@
 #include "core/voxel/voxel_file.h"
 #include "core/voxel/voxelize.h"
 
+#ifdef SL_HAVE_OPENCL
+#include "core/voxel/opencl/voxelize_opencl.h"
+#endif
+
 namespace sightline {
 namespace {
 
 struct VoxelsArguments {
   std::filesystem::path scene, output;
   VoxelSize size;
+  std::string separate = "conservative";
+  std::vector<std::string> attributes;
+  std::string device = "cpu";
   uint64_t memory_mib = 1024;
   bool without_triangles = false;
   bool overwrite = false;
   SceneLoadOptions load;
 };
+
+Separation separationOf(const std::string& name) {
+  return name == "26" ? Separation::k26 : name == "6" ? Separation::k6 : Separation::kConservative;
+}
+
+bool wants(const VoxelsArguments& arguments, const std::string& attribute) {
+  return std::ranges::find(arguments.attributes, attribute) != arguments.attributes.end();
+}
+
+void voxelizeOn(const std::string& device, const Scene& scene, const VoxelizeOptions& options,
+                const std::function<void(VoxelBlock&&)>& take) {
+  if (device == "cpu") {
+    voxelize(scene, options, take);
+    return;
+  }
+#ifdef SL_HAVE_OPENCL
+  voxelizeOpenCl(scene, options, device, take);
+#else
+  throw Error("--device " + device + ": this program was built without OpenCL; take cpu", kExitUsage);
+#endif
+}
 
 void sayLevels(const Lattice& lattice, const std::vector<VoxelLevelCounts>& levels) {
   fmt::print("{:>5}  {:>10}  {:>13}  {:>9}  {:>11}  {:>12}\n", "level", "voxel", "voxels", "blocks", "MiB",
@@ -44,6 +77,11 @@ void sayLevels(const Lattice& lattice, const std::vector<VoxelLevelCounts>& leve
   if (levels.front().triangle_bytes != 0) {
     fmt::print("ids of triangles by block: {:.3f} MiB\n", double(levels.front().triangle_bytes) / 0x1p20);
   }
+  if (levels.front().attribute_bytes != 0) {
+    fmt::print("attributes: {:.3f} MiB, {:.2f} bytes a voxel\n",
+               double(levels.front().attribute_bytes) / 0x1p20,
+               double(levels.front().attribute_bytes) / double(levels.front().voxels));
+  }
 }
 
 void run(const VoxelsArguments& arguments) {
@@ -53,16 +91,18 @@ void run(const VoxelsArguments& arguments) {
   const Lattice lattice = arguments.size.of(scene);
   const StopSignal stop;
   ShareLine status("voxelised");
-  VoxelWriter writer(arguments.output, headOf(scene, lattice, !arguments.without_triangles));
   const VoxelizeOptions options{
       .lattice = lattice,
+      .separation = separationOf(arguments.separate),
       .with_triangles = !arguments.without_triangles,
+      .attributes = {.normals = wants(arguments, "normal"), .objects = wants(arguments, "object")},
       .memory = arguments.memory_mib << 20,
       .progress = [&](double done,
                       uint64_t voxels) { status.show(done, [&] { return shortCount(voxels) + " voxels"; }); },
       .stop = stop.flag()};
+  VoxelWriter writer(arguments.output, headOf(scene, options));
   try {
-    voxelize(scene, options, [&](VoxelBlock&& block) { writer.add(std::move(block)); });
+    voxelizeOn(arguments.device, scene, options, [&](VoxelBlock&& block) { writer.add(std::move(block)); });
   } catch (const Interrupted&) {
     status.end();
     fmt::print("stopped: nothing is written\n");
@@ -76,14 +116,14 @@ void run(const VoxelsArguments& arguments) {
 }
 
 constexpr const char* kVoxelsFooter =
-    "Every voxel that a triangle meets, and no other: decided exactly, touching counts. A\n"
-    "voxel's size is a power of two in the scene's units, and the origin is a corner of\n"
-    "voxels. The file holds, for each block of 64 x 64 x 64, the ids of the triangles that\n"
-    "meet it, and coarser levels up to the root: a voxel is in one if it has a part in the\n"
-    "level below.\n\n"
+    "Every voxel that a triangle meets, and no other: decided exactly, touching\n"
+    "counts. A voxel's size is a power of two in the scene's units, and the origin\n"
+    "is a corner of voxels. The file holds, for each block of 64 x 64 x 64, the ids\n"
+    "of the triangles that meet it, and coarser levels up to the root: a voxel is in\n"
+    "one if it has a part in the level below.\n\n"
     "Examples:\n"
     "  sightline voxels city.glb -o city.slv --voxel 0.25\n"
-    "  sightline voxels statue.ply -o statue.slv --along 1024\n";
+    "  sightline voxels statue.ply -o statue.slv --along 1024 --separate 6\n";
 
 }  // namespace
 
@@ -93,6 +133,29 @@ void addVoxelsCommand(CLI::App& app) {
   command->add_option("SCENE", a->scene, "Scene file: .obj, .gltf, .glb or .ply")->required();
   command->add_option("-o,--output", a->output, "Voxel file to write (.slv)")->required();
   a->size.declare(*command);
+  command
+      ->add_option(
+          "--separate", a->separate,
+          "Voxels that keep a surface's sides apart: all that it meets (conservative), or the fewest for "
+          "paths by faces, edges and corners (26), or by faces (6)")
+      ->check(oneOf({"conservative", "26", "6"}))
+      ->type_name("HOW")
+      ->capture_default_str();
+  command
+      ->add_option("--attributes", a->attributes,
+                   "Of each voxel, from what is in it, by area: normal, object")
+      ->check(oneOf({"normal", "object"}))
+      ->delimiter(',')
+      ->type_name("NAME");
+  command->add_option("--device", a->device, "cpu, or opencl or opencl:N: the same bytes")
+      ->check(CLI::Validator(
+          [](std::string& text) {
+            if (text == "cpu" || text == "opencl" || text.starts_with("opencl:")) return std::string();
+            return text + " does not voxelise: expected cpu, opencl or opencl:N";
+          },
+          ""))
+      ->type_name("NAME")
+      ->capture_default_str();
   command
       ->add_option("--memory", a->memory_mib,
                    "MiB for lists of triangles, beside the scene: with fewer, more passes")

@@ -47,7 +47,7 @@ struct WalkCommand {
   std::vector<std::string> methods{kAllMethods};
   std::string device = "vulkan", tracer = "cpu";
   std::string resolution = "1280x720";
-  std::string check = kAllMethods, schedule = "live", outside = "all";
+  std::string check = kAllMethods, schedule = "live", outside = "all", chain = "barriers";
   uint32_t split = kDefaultSplit;
   uint32_t views = 200;
   std::optional<uint64_t> max_false;
@@ -110,20 +110,34 @@ std::vector<std::string> chooseMethods(const WalkCommand& command, const WalkDev
   return chosen;
 }
 
-/// Views of a cell, each a jump; or the walk's frames.
+/// The cells of --path views:CELL,...: by name or number; a name may hold commas itself.
+std::vector<uint32_t> viewedCells(const WalkCommand& command, const PvsFile& pvs) {
+  const std::string all = command.path.substr(kViewsPath.size());
+  std::vector<std::string> names = {all};
+  const bool one = std::ranges::any_of(pvs.cells, [&](const CellPvs& cell) { return cell.cell.name == all; });
+  if (!one) names = CLI::detail::split(all, ',');
+  requireDistinct("--path", names);
+  std::vector<uint32_t> cells;
+  for (const std::string& name : names) {
+    cells.push_back(uint32_t(&chooseCell(pvs, name, command.pvs) - pvs.cells.data()));
+  }
+  return cells;
+}
+
+/// Views of cells, each a jump; or the walk's frames.
 WalkFrames walkFrames(const WalkCommand& command, const PvsFile* pvs, const Scene& scene,
                       const AxisBox& bounds, glm::uvec2 size, WalkReport& report) {
   WalkFrames frames;
   const float near = nearDistance(bounds);
   if (command.path.starts_with(kViewsPath)) {
-    const std::string name = command.path.substr(kViewsPath.size());
-    const CellPvs& cell = chooseCell(*pvs, name, command.pvs);
-    const auto index = uint32_t(&cell - pvs->cells.data());
     report.fov = kDefaultFov;
-    for (const ViewFrame& view :
-         measureViews(cell.cell, index, command.views, command.options.method.schedule.seed, kDefaultFov)) {
-      if (!frames.cameras.empty()) frames.cuts.push_back(uint32_t(frames.cameras.size()));
-      frames.cameras.push_back(makeCamera(view, size.x, size.y, near));
+    for (const uint32_t cell : viewedCells(command, *pvs)) {
+      for (const ViewFrame& view : measureViews(pvs->cells[cell].cell, cell, command.views,
+                                                command.options.method.schedule.seed, kDefaultFov)) {
+        if (!frames.cameras.empty()) frames.cuts.push_back(uint32_t(frames.cameras.size()));
+        frames.cameras.push_back(makeCamera(view, size.x, size.y, near));
+        frames.cells.push_back(cell);
+      }
     }
     return frames;
   }
@@ -216,9 +230,9 @@ ReplayOptions replayOptions(const WalkCommand& command) {
   ReplayOptions options = command.options;
   options.check = command.check == kAllMethods;
   options.method.schedule.fixed = command.schedule == "fixed";
-  options.method.outside = command.outside == "all"       ? OutsideCells::all
-                           : command.outside == "nearest" ? OutsideCells::nearest
-                                                          : OutsideCells::error;
+  options.method.cells.outside = command.outside == "all"       ? OutsideCells::all
+                                 : command.outside == "nearest" ? OutsideCells::nearest
+                                                                : OutsideCells::error;
   ChcOptions& chc = options.method.chc;
   chc.tight_bounds = !command.no_tight;
   chc.c_queue = !command.no_c_queue;
@@ -303,6 +317,7 @@ void sayUnused(const CLI::App& given, const WalkCommand& command) {
   if (command.pvs.empty() && asksForAll(command)) say("--outside", "of methods by sets (--pvs)");
   if (!views) sayUnlessAny({"--pvs"}, by_sets);
   if (command.pvs.empty()) say("--doors", "of sets (--pvs)");
+  if (command.device == "cpu") say("--chain", "of Vulkan");
   if (!views) say("--views", "of --path views:CELL");
   const bool checks = command.check == kAllMethods;
   if (!checks) say("--trace-every", "of --check all");
@@ -332,6 +347,7 @@ void run(const CLI::App& given, const WalkCommand& command) {
   report.pvs = command.pvs.filename().string();
   report.width = size.x, report.height = size.y;
   report.split = command.split;
+  report.chain = command.device == "cpu" ? "" : command.chain;
   report.options = replayOptions(command);
   sayUnused(given, command);
 
@@ -350,6 +366,12 @@ void run(const CLI::App& given, const WalkCommand& command) {
   std::optional<PvsUnits> units;
   if (pvs) units = makePvsUnits(*pvs, draw.drawables);
   report.frames = walkFrames(command, pvs ? &*pvs : nullptr, scene, boundsOf(draw.drawables), size, report);
+  report.options.method.cells.of_frames = report.frames.cells;
+  if (units) {
+    for (size_t i = 0; i < units->cells.size(); ++i) {
+      report.cells.push_back({units->cells[i].name, units->triangles.lists[i].ids.size()});
+    }
+  }
   if (!command.pictures.empty()) {
     makeFolder(command.pictures);
     report.options.shown_frames = framesToShow(report.frames);
@@ -359,7 +381,8 @@ void run(const CLI::App& given, const WalkCommand& command) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   };
   const WalkScene walk{scene, draw, units ? &*units : nullptr};
-  const auto device = makeWalkDevice(command.device, walk, clock);
+  const auto device =
+      makeWalkDevice(command.device, walk, clock, {.semaphores = command.chain == "semaphores"});
   report.device = device->info();
   report.gpu_times = device->timesGpu();
   fmt::print("{}, {}; {} of {} x {} pixels, schedule {}, seed {}\n", report.device.id, report.device.name,
@@ -393,10 +416,10 @@ void run(const CLI::App& given, const WalkCommand& command) {
 void declareFiles(CLI::App& command, WalkCommand& o) {
   command.add_option("scene", o.scene, "the scene")->required()->type_name("SCENE");
   command
-      .add_option(
-          "--path", o.path,
-          "the camera's walk (made by path or scene); views:CELL: the views by which measure looks out of a "
-          "cell of --pvs")
+      .add_option("--path", o.path,
+                  "the camera's walk (made by path or scene); views:CELL,...: the views by which measure "
+                  "looks out of "
+                  "cells of --pvs")
       ->required()
       ->type_name("W.json");
   command.add_option("--methods", o.methods, "all, or names with commas between them; they are listed below")
@@ -453,7 +476,7 @@ void declareReplay(CLI::App& command, WalkCommand& o) {
       ->check(tracerName())
       ->type_name("NAME")
       ->capture_default_str();
-  whole("--views", o.views, "views of --path views:CELL", 1, kMostPathFrames);
+  whole("--views", o.views, "views of each cell of --path views:CELL", 1, kMostPathFrames);
   command.add_option("--seed", o.options.method.schedule.seed, "of jitter and views")
       ->transform(wholeNumber())
       ->type_name("N")
@@ -477,6 +500,13 @@ void declareCulling(CLI::App& command, WalkCommand& o) {
                   "live: answers arrive when the device has them; fixed: after so many steps, the same on "
                   "all devices")
       ->check(oneOf({"live", "fixed"}))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option(
+          "--chain", o.chain,
+          "what makes a submit wait for the one before it, on Vulkan: barriers, or semaphores besides")
+      ->check(oneOf({"barriers", "semaphores"}))
       ->capture_default_str()
       ->group(group);
   whole("--batch", chc.batch_size, "hidden nodes that wait to be asked about together (chc++, opti-chc++)",

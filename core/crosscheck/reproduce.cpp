@@ -104,7 +104,7 @@ Scene partOf(const Scene& scene, std::span<const uint32_t> triangles) {
       corners[i] = place->second;
     }
     part.triangles.push_back(corners);
-    part.surfaces.words.push_back(scene.surfaces.of(triangle) & kSurfaceGlass);
+    part.surfaces.words.push_back(scene.surfaceOf(triangle) & kSurfaceGlass);
   }
   if (!featuresOf(part.surfaces).glass) part.surfaces.words.clear();
   part.objects = {{"around-the-ray", 0, uint32_t(part.triangles.size())}};

@@ -1,5 +1,6 @@
 #pragma once
 #include <memory>
+#include <span>
 
 #include "core/draw/cull_method.h"
 #include "core/draw/draw_scene.h"
@@ -16,19 +17,27 @@ enum class OutsideCells {
   error,    ///< throw Error
 };
 
+/// Which cell a frame draws.
+struct CellChoice {
+  OutsideCells outside = OutsideCells::all;
+  /// Of each frame of a walk, by its number; empty: the cell that the camera is in. Must outlive who uses it.
+  std::span<const uint32_t> of_frames = {};
+};
+
 /// Draws the cell's triangles by its list: QueryBackend::submitList of the cell's number in units.triangles,
 /// which the backend was made with. Throws Error that names the frame and the place, with
 /// OutsideCells::error. Scene and units must outlive the method.
-std::unique_ptr<CullMethod> cullPvsList(const DrawScene& scene, const PvsUnits& units, OutsideCells outside);
+std::unique_ptr<CullMethod> cullPvsList(const DrawScene& scene, const PvsUnits& units,
+                                        const CellChoice& choice);
 
 /// Draws the drawables with a triangle in the cell's set that the image may show (Frustum).
 std::unique_ptr<CullMethod> cullPvsFrustum(const DrawScene& scene, const PvsUnits& units,
-                                           OutsideCells outside);
+                                           const CellChoice& choice);
 
-/// The camera's cell from frame to frame: PvsUnits::cellAt with the last cell as hint.
+/// The cell from frame to frame: where it is the camera's, PvsUnits::cellAt with the last one as hint.
 class CameraCell {
  public:
-  CameraCell(const PvsUnits& units, OutsideCells outside) : units_(units), outside_(outside) {}
+  CameraCell(const PvsUnits& units, const CellChoice& choice) : units_(units), choice_(choice) {}
 
   /// The cell to draw; nothing: draw all. counts.outside says whether the camera is in no cell. number: of
   /// the frame.
@@ -37,7 +46,7 @@ class CameraCell {
 
  private:
   const PvsUnits& units_;
-  OutsideCells outside_;
+  CellChoice choice_;
   std::optional<uint32_t> last_;
 };
 

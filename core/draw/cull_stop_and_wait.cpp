@@ -1,24 +1,17 @@
 #include "core/draw/cull_methods.h"
-#include "core/draw/frame_recorder.h"
 #include "core/draw/node_queue.h"
+#include "core/draw/stateless_method.h"
 
 namespace sightline {
 
-namespace {
-
-class StopAndWaitCulled : public CullMethod {
- public:
-  StopAndWaitCulled(const DrawScene& scene, const Schedule& schedule) : scene_(scene), schedule_(schedule) {}
-
-  FrameCounts drawFrame(const Camera& camera, uint64_t, QueryBackend& backend,
-                        std::vector<uint32_t>& drawn) override {
-    FrameRecorder frame(scene_.drawables, camera, backend, drawn, schedule_);
-    NodeQueue queue(scene_.tree, camera);
-    if (!scene_.tree.nodes.empty()) queue.push(0);
+std::unique_ptr<CullMethod> cullStopAndWait(const DrawScene& scene, const Schedule& schedule) {
+  return statelessMethod(scene, schedule, [&scene](FrameRecorder& frame, const Camera& camera) {
+    NodeQueue queue(scene.tree, camera);
+    if (!scene.tree.nodes.empty()) queue.push(0);
     while (!queue.empty()) {
       const uint32_t index = queue.pop();
       ++frame.counts.node_visits;
-      const BoxNode& node = scene_.tree.nodes[index];
+      const BoxNode& node = scene.tree.nodes[index];
       if (frame.guard().frustum().sideOf(node.box) == FrustumSide::outside) continue;
       if (const auto grown = frame.guard().grown(node.box)) {
         frame.ask(*grown);
@@ -30,20 +23,7 @@ class StopAndWaitCulled : public CullMethod {
         queue.pushChildren(index);
       }
     }
-    frame.finish();
-    return frame.counts;
-  }
-  void forget() override {}
-
- private:
-  const DrawScene& scene_;
-  Schedule schedule_;
-};
-
-}  // namespace
-
-std::unique_ptr<CullMethod> cullStopAndWait(const DrawScene& scene, const Schedule& schedule) {
-  return std::make_unique<StopAndWaitCulled>(scene, schedule);
+  });
 }
 
 }  // namespace sightline

@@ -9,7 +9,7 @@ namespace {
 
 AlphaKind alphaOf(const Scene& scene, uint32_t id) {
   if (scene.surfaces.empty()) return AlphaKind::opaque;
-  const uint32_t word = scene.surfaces.of(id);  // a scene with surfaces has no instances, so ids are indices
+  const uint32_t word = scene.surfaceOf(id);
   if ((word & kSurfaceGlass) != 0) return AlphaKind::blended;
   return (word & kSurfaceMasked) != 0 ? AlphaKind::masked : AlphaKind::opaque;
 }

@@ -3,15 +3,17 @@
 #include <numeric>
 
 #include "core/draw/raster_triangle.h"
+#include "core/scene/instances.h"
 #include "core/shared/surface.h"
 
 namespace sightline {
 
 SoftwareImage::SoftwareImage(const Scene& scene) : scene_(scene) {
   if (scene.surfaces.empty()) return;
-  std::vector<uint32_t> order(scene.triangles.size());  // no instances, so ids are indices
+  std::vector<uint32_t> order(scene.triangleCount());
   std::iota(order.begin(), order.end(), 0u);
-  surfaces_ = packSurfaces(scene.surfaces, order);
+  const Surfaces flat = scene.hasInstances() ? flatSurfaces(scene) : Surfaces();
+  surfaces_ = packSurfaces(scene.hasInstances() ? flat : scene.surfaces, order);
 }
 
 void SoftwareImage::begin(const Camera& camera) {
@@ -21,7 +23,7 @@ void SoftwareImage::begin(const Camera& camera) {
 }
 
 bool SoftwareImage::draw(uint32_t id, bool writes) {
-  const uint32_t surface = scene_.surfaces.of(id);
+  const uint32_t surface = surfaces_.empty() ? 0u : surfaces_[kSurfaceHeaderWords + id];
   bool drawn = false;
   rasterTriangle(camera_, scene_.corners(id), [&](const RasterPixel& pixel) {
     if ((surface & kSurfaceFrontOnly) != 0 && !pixel.front) return false;

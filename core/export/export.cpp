@@ -25,10 +25,10 @@ Json objectsJson(const Scene& scene, const CellPvs& cell) {
   return objects;
 }
 
-void copySurface(const Surfaces& from, uint32_t triangle, Surfaces& to) {
-  uint32_t word = from.of(triangle);
+void copySurface(const Scene& from, uint32_t triangle, Surfaces& to) {
+  uint32_t word = from.surfaceOf(triangle);
   if ((word & kSurfaceMasked) != 0) {
-    to.masked.push_back(from.masked[word & kSurfaceIndex]);
+    to.masked.push_back(from.maskPlaces(triangle));
     word = (word & ~kSurfaceIndex) | uint32_t(to.masked.size() - 1);
   }
   to.words.push_back(word);
@@ -52,7 +52,7 @@ void copyObject(const Scene& scene, const SceneObject& object, const CellPvs& ce
       corners[corner] = index;
     }
     visible.triangles.push_back(corners);
-    if (!scene.surfaces.empty()) copySurface(scene.surfaces, triangle, visible.surfaces);
+    if (!scene.surfaces.empty()) copySurface(scene, triangle, visible.surfaces);
   }
   const auto count = uint32_t(visible.triangles.size()) - first;
   if (count == 0) return;

@@ -25,9 +25,6 @@
 namespace sightline {
 namespace {
 
-/// Of the triangles of shared meshes.
-const GltfSurface kOpaqueSurface{};
-
 /// A small file may place a mesh, and a mesh hold an accessor, any number of times. What that may cost is a
 /// number of steps for each of the file's bytes: a step makes a vertex or a triangle. (A forest of 5,000
 /// trees with 50,000 triangles each takes 300 of them.)
@@ -109,16 +106,9 @@ class GltfLoader {
   }
 
   /// Collects what several nodes show without a skin, where that pays: other scenes are placed in double, as
-  /// they are. Nothing where there is something to see through: whether a ray passes is kept for each
-  /// triangle of the plain scene.
+  /// they are.
   void findMeshes() {
-    if (options_.cull_back_faces) return;
     for (const GltfInstance& instance : tree_.instances) {
-      for (const GltfPrimitive& primitive : document_.meshes[instance.mesh].primitives) {
-        if (primitive.material.alpha != GltfMaterial::Alpha::kOpaque || primitive.material.glass) {
-          return shared_.clear();
-        }
-      }
       if (!document_.nodes[instance.node].skin) shared_[keyOf(instance)].users.push_back(&instance);
     }
     std::erase_if(shared_, [&](const auto& entry) {
@@ -159,6 +149,8 @@ class GltfLoader {
   /// The mesh in its own space. Only vertices that its triangles use.
   void readMesh(const GltfInstance& instance, SharedMesh& mesh) {
     mesh.read = true;
+    std::vector<MaskedTriangle>& masked = builder_.surfaces().masked;
+    const size_t masked_before = masked.size();
     SceneBuilder builder(options_, glm::dvec3(0.0));
     GltfVertices vertices(document_, tree_, data_, name_, builder);
     into_ = &builder;
@@ -176,7 +168,11 @@ class GltfLoader {
     mesh.bounds = sceneBounds(made);
     const auto places = std::ranges::count_if(
         mesh.users, [&](const GltfInstance* user) { return canPlace(placementOf(*user), mesh.bounds); });
-    if (places >= 2) mesh.number = builder_.addMesh(std::move(made.positions), std::move(made.triangles));
+    if (places >= 2) {
+      mesh.number = builder_.addMesh(std::move(made));
+    } else {
+      masked.resize(masked_before);
+    }
   }
 
   /// Without the vertices that no triangle uses.
@@ -208,9 +204,7 @@ class GltfLoader {
       if (mesh->triangles[i] == 0) continue;
       beginObject(instance, i);
       builder_.countPlaced(mesh->triangles[i]);
-      if (!document_.meshes[instance.mesh].primitives[i].material.double_sided) {
-        builder_.countSingleSided(mesh->triangles[i]);
-      }
+      countKinds(document_.meshes[instance.mesh].primitives[i].material, mesh->triangles[i], builder_);
     }
     return true;
   }
@@ -359,7 +353,7 @@ class GltfLoader {
     beginObject(instance, index);
     const GltfVertexRun& vertices = from_->add(sourceOf(instance, primitive));
     if (document_.nodes[instance.node].skin && primitive.joints.empty()) ++unbound_;
-    surface_ = into_ == &builder_ ? &alpha_.surface(instance.mesh, index) : &kOpaqueSurface;
+    surface_ = &alpha_.surface(instance.mesh, index);
     into_->beginSurface(surface_->flags);
     const uint64_t before = into_->triangleCount();
     const uint64_t elements = elementCount(primitive);
@@ -376,13 +370,16 @@ class GltfLoader {
     } else {
       addTriangles(primitive.mode, elements, vertices, place, [](uint64_t i) { return i; });
     }
-    const uint64_t added = into_->triangleCount() - before;
-    const bool alpha = primitive.material.alpha != GltfMaterial::Alpha::kOpaque;
-    if (alpha) into_->countAlpha(added);
-    if (primitive.material.alpha == GltfMaterial::Alpha::kMask && options_.opaque_masks)
-      into_->countOpaqueMasks(added);
-    if (primitive.material.glass && !alpha) into_->countGlass(added);
-    if (!primitive.material.double_sided) into_->countSingleSided(added);
+    countKinds(primitive.material, into_->triangleCount() - before, *into_);
+  }
+
+  void countKinds(const GltfMaterial& material, uint64_t triangles, SceneBuilder& builder) const {
+    const bool alpha = material.alpha != GltfMaterial::Alpha::kOpaque;
+    if (alpha) builder.countAlpha(triangles);
+    if (material.alpha == GltfMaterial::Alpha::kMask && options_.opaque_masks)
+      builder.countOpaqueMasks(triangles);
+    if (material.glass && !alpha) builder.countGlass(triangles);
+    if (!material.double_sided) builder.countSingleSided(triangles);
   }
 
   void addIndexed(const GltfPrimitive& primitive, const GltfVertexRun& vertices, const std::string& place) {

@@ -210,8 +210,10 @@ void SceneBuilder::reserve(uint64_t positions, uint64_t triangles) {
   scene_.triangles.reserve(scene_.triangles.size() + triangles);
 }
 
-uint32_t SceneBuilder::addMesh(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles) {
-  meshes_.push_back({std::move(positions), std::move(triangles)});
+uint32_t SceneBuilder::addMesh(Scene mesh) {
+  std::vector<uint32_t>& words = mesh.surfaces.words;
+  if (!words.empty()) words.resize(mesh.triangles.size(), 0u);
+  meshes_.push_back({std::move(mesh.positions), std::move(mesh.triangles), std::move(words)});
   return uint32_t(meshes_.size() - 1);
 }
 
@@ -227,7 +229,12 @@ void SceneBuilder::place(uint32_t mesh, const Placement& place) {
 /// Puts the meshes behind what is in none; writes them out where they do not pay.
 void SceneBuilder::joinMeshes() {
   if (scene_.instances.empty()) return;
+  std::vector<uint32_t>& words = scene_.surfaces.words;
   for (MeshData& mesh : meshes_) {
+    if (!mesh.words.empty()) {
+      words.resize(scene_.triangles.size(), 0u);
+      words.insert(words.end(), mesh.words.begin(), mesh.words.end());
+    }
     const auto first = uint32_t(scene_.positions.size());
     scene_.meshes.push_back({first, uint32_t(mesh.positions.size()), uint32_t(scene_.triangles.size()),
                              uint32_t(mesh.triangles.size())});
@@ -235,6 +242,7 @@ void SceneBuilder::joinMeshes() {
     for (const glm::uvec3& t : mesh.triangles) scene_.triangles.push_back(t + first);
     mesh = {};
   }
+  if (!words.empty()) words.resize(scene_.triangles.size(), 0u);
   countInstances(scene_);
   if (scene_.vertexCount() > kMaxElements) throw Error("the instances have too many vertices");
   if (flatten_ || !instancesPay(scene_.triangles.size(), scene_.triangleCount())) {

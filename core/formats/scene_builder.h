@@ -93,8 +93,9 @@ class SceneBuilder {
   void warn(std::string_view line) { scene_.warnings.push_back(cleanName(line)); }
   uint64_t triangleCount() const { return scene_.triangles.size() + placed_; }
 
-  /// Adds a mesh for instances; indices count within its positions. Returns its number.
-  uint32_t addMesh(std::vector<glm::vec3> positions, std::vector<glm::uvec3> triangles);
+  /// Adds a mesh for instances, positions, triangles and surface words of a scene; indices count within its
+  /// positions, masked triangles among surfaces(). Returns its number.
+  uint32_t addMesh(Scene mesh);
 
   /// Places a mesh (canPlace): its triangles come next, and are told to the objects that begin by
   /// countPlaced.
@@ -115,6 +116,7 @@ class SceneBuilder {
   struct MeshData {
     std::vector<glm::vec3> positions;
     std::vector<glm::uvec3> triangles;
+    std::vector<uint32_t> words;  ///< empty: all are opaque from both sides
   };
 
   void joinMeshes();

@@ -11,6 +11,7 @@
 #include "core/formats/glb_bytes.h"
 #include "core/formats/mask_image.h"
 #include "core/formats/saved_runs.h"
+#include "core/scene/instances.h"
 #include "core/scene/scene.h"
 
 namespace sightline {
@@ -218,6 +219,7 @@ class GltfWriter {
 void writeGlb(const Scene& scene, const std::string& name,
               const std::function<void(std::string_view)>& write) {
   checkWritable(scene, name);
+  if (scene.hasInstances() && !scene.surfaces.empty()) return writeGlb(flatten(scene), name, write);
   const SavedRuns saved = splitIntoRuns(scene);
   const bool masked = !saved.triangles.empty();
   const std::vector<glm::vec3>& positions = masked ? saved.positions : scene.positions;

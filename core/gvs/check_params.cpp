@@ -32,7 +32,7 @@ void requireMethodOn(Method method, const std::string& device) {
 
 void requireDrawable(Method method, const Scene& scene) {
   if (method != Method::kRaster || scene.surfaces.empty()) return;
-  const SurfaceCounts counts = countSurfaces(scene.surfaces);
+  const SurfaceCounts counts = countSurfaces(scene);
   throw Error(
       fmt::format("the method raster draws every triangle as opaque from both sides; of this scene {} have "
                   "holes, {} are glass, {} have no back: use another method",

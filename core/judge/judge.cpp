@@ -74,7 +74,7 @@ ExactHit Judge::nearest(const JudgeRay& ray) const {
       if (!t) return;
       contact.t = rangeOf(*t);
     }
-    if (!meetsSurface(scene_.surfaces, triangle, ray, shape)) return;
+    if (!meetsSurface(scene_, triangle, ray, shape)) return;
     limit = std::min(limit, contact.t.high);
     met.push_back({triangle, contact.t});
   };
@@ -87,7 +87,7 @@ bool Judge::meets(const JudgeRay& ray, uint32_t triangle) const {
   const FilteredContact contact = filterContact(ray, shape, HUGE_VAL);
   if (contact.certainty == Certainty::kMiss) return false;
   if (contact.certainty == Certainty::kUnsure && !exactContact(ray, shape)) return false;
-  return meetsSurface(scene_.surfaces, triangle, ray, shape);
+  return meetsSurface(scene_, triangle, ray, shape);
 }
 
 std::vector<uint32_t> Judge::glassBefore(const JudgeRay& ray, const ExactHit& end) const {

@@ -41,7 +41,7 @@ class Judge {
 
   bool hasGlass() const { return has_glass_; }
   /// Whether rays go on behind the triangle.
-  bool isGlass(uint32_t triangle) const { return (scene_.surfaces.of(triangle) & kSurfaceGlass) != 0; }
+  bool isGlass(uint32_t triangle) const { return (scene_.surfaceOf(triangle) & kSurfaceGlass) != 0; }
 
   /// Where the ray's line crosses the triangle's plane: a range of less than 2^-40 of it.
   /// Nothing where they are parallel or the triangle has no area.
@@ -53,7 +53,7 @@ class Judge {
 
   /// Whether rays may pass inside the triangle's edges: through holes, or from behind.
   bool isPassable(uint32_t triangle) const {
-    return (scene_.surfaces.of(triangle) & (kSurfaceMasked | kSurfaceFrontOnly)) != 0;
+    return (scene_.surfaceOf(triangle) & (kSurfaceMasked | kSurfaceFrontOnly)) != 0;
   }
 
   /// The corners of a triangle.

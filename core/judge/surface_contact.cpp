@@ -102,12 +102,11 @@ bool meetsFront(const JudgeRay& ray, const JudgeTriangle& shape) {
 
 }  // namespace
 
-bool meetsSurface(const Surfaces& surfaces, uint32_t triangle, const JudgeRay& ray,
-                  const JudgeTriangle& shape) {
-  const uint32_t surface = surfaces.of(triangle);
+bool meetsSurface(const Scene& scene, uint32_t triangle, const JudgeRay& ray, const JudgeTriangle& shape) {
+  const uint32_t surface = scene.surfaceOf(triangle);
   if ((surface & kSurfaceFrontOnly) != 0 && !meetsFront(ray, shape)) return false;
   if ((surface & kSurfaceMasked) == 0) return true;
-  return meetsTexel(surfaces, surfaces.masked[surface & kSurfaceIndex], ray, shape);
+  return meetsTexel(scene.surfaces, scene.maskPlaces(triangle), ray, shape);
 }
 
 }  // namespace sightline

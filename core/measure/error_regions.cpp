@@ -13,8 +13,8 @@ constexpr uint32_t kFree = 0xffffffffu;
 
 }  // namespace
 
-ErrorRegions::ErrorRegions(uint32_t resolution)
-    : resolution_(resolution), run_of_(size_t(resolution) * resolution, kFree) {}
+ErrorRegions::ErrorRegions(uint32_t width, uint32_t height)
+    : width_(width), height_(height), run_of_(size_t(width) * height, kFree) {}
 
 void ErrorRegions::markRuns(std::span<const PixelRun> runs) {
   runs_.clear();
@@ -64,11 +64,11 @@ uint32_t ErrorRegions::add(uint32_t run, ImageError& error) {
   runs_[run].size = size;
   error.wrong += size;
   ++error.regions;
-  const uint32_t row = mine.first / resolution_, start = row * resolution_, end = start + resolution_ - 1;
+  const uint32_t row = mine.first / width_, start = row * width_, end = start + width_ - 1;
   const uint32_t first = std::max(mine.first, start + 1) - 1, last = std::min(mine.last + 1, end);
   uint32_t region = joinRow(run, first, last, error);
-  if (row > 0) region = joinRow(region, first - resolution_, last - resolution_, error);
-  if (row + 1 < resolution_) region = joinRow(region, first + resolution_, last + resolution_, error);
+  if (row > 0) region = joinRow(region, first - width_, last - width_, error);
+  if (row + 1 < height_) region = joinRow(region, first + width_, last + width_, error);
   return runs_[region].size;
 }
 

@@ -19,12 +19,13 @@ struct PixelRun {
   uint16_t level;  ///< wrong for the first so many sets of a series
 };
 
-/// Counts wrong pixels and their regions in square images, for a whole series of ever larger sets at once.
+/// Counts wrong pixels and their regions in images, for a whole series of ever larger sets at once.
 /// Reused from image to image; not thread-safe.
 class ErrorRegions {
  public:
-  /// resolution: pixels a side, 1 .. 16,384.
-  explicit ErrorRegions(uint32_t resolution);
+  /// Pixels a side, 1 .. 16,384.
+  ErrorRegions(uint32_t width, uint32_t height);
+  explicit ErrorRegions(uint32_t resolution) : ErrorRegions(resolution, resolution) {}
 
   /// runs: ascending, without a pixel in common, levels 1 .. errors.size(). errors[k] becomes that of the
   /// runs with a level above k.
@@ -43,7 +44,7 @@ class ErrorRegions {
   uint32_t add(uint32_t run, ImageError& error);
   uint32_t joinRow(uint32_t region, uint32_t first, uint32_t last, ImageError& error);
 
-  uint32_t resolution_;
+  uint32_t width_, height_;
   std::vector<uint32_t> run_of_;  ///< a pixel; kFree: right
   std::vector<Run> runs_;
   std::vector<uint32_t> starts_, order_;

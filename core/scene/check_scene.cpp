@@ -73,7 +73,6 @@ void checkMeshes(const Scene& scene) {
 /// Returns how many triangles there are in all.
 size_t checkInstances(const Scene& scene) {
   checkMeshes(scene);
-  if (!scene.surfaces.empty()) throw Error("a scene with instances has surfaces: flatten it first");
   std::vector<Bounds> bounds;
   for (const SceneMesh& mesh : scene.meshes) {
     Bounds box{scene.positions[mesh.first_position], scene.positions[mesh.first_position]};
@@ -107,6 +106,10 @@ size_t checkInstances(const Scene& scene) {
 void checkScene(const Scene& scene) {
   if (scene.triangles.empty()) throw Error("the scene has no triangles");
   const size_t stored = scene.triangles.size();
+  if (!scene.surfaces.empty() && scene.surfaces.words.size() != stored) {
+    throw Error(
+        fmt::format("{} triangles are stored, but {} have a surface", stored, scene.surfaces.words.size()));
+  }
   const size_t count = scene.hasInstances() ? checkInstances(scene) : stored;
   if (count == 0) throw Error("the scene has no triangles");
   if (count > kMostTriangles) throw Error(fmt::format("the scene has {} triangles, too many for ids", count));

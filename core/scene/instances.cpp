@@ -1,9 +1,12 @@
 #include "core/scene/instances.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "core/base/error.h"
 #include "core/scene/instance_record.h"
 #include "core/scene/largest.h"
 
@@ -65,6 +68,25 @@ void countInstances(Scene& scene) {
   }
 }
 
+Surfaces flatSurfaces(const Scene& scene) {
+  Surfaces flat;
+  if (scene.surfaces.empty()) return flat;
+  if (const uint64_t masked = countSurfaces(scene).masked; masked > uint64_t(kSurfaceIndex) + 1) {
+    throw Error(fmt::format("{} triangles with masks, {} at most where instances are written out", masked,
+                            uint64_t(kSurfaceIndex) + 1));
+  }
+  flat.masks = scene.surfaces.masks;
+  flat.texels = scene.surfaces.texels;
+  flat.words.reserve(scene.triangleCount());
+  uint32_t masked = 0;
+  for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
+    const uint32_t word = scene.surfaceOf(id);
+    if ((word & kSurfaceMasked) != 0) flat.masked.push_back(scene.maskPlaces(id));
+    flat.words.push_back(flatWord(word, masked));
+  }
+  return flat;
+}
+
 Scene flatten(Scene scene) {
   if (!scene.hasInstances()) return scene;
   std::vector<glm::vec3> positions;
@@ -78,6 +100,7 @@ Scene flatten(Scene scene) {
   }
   std::vector<glm::uvec3> triangles(scene.triangleCount());
   for (uint32_t id = 0; id < triangles.size(); ++id) triangles[id] = scene.vertexNumbers(id);
+  scene.surfaces = flatSurfaces(scene);
   scene.positions = std::move(positions);
   scene.triangles = std::move(triangles);
   scene.meshes.clear();

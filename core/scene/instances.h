@@ -24,8 +24,18 @@ bool instancesPay(uint64_t stored_triangles, uint64_t all_triangles);
 /// triangles.
 void countInstances(Scene& scene);
 
+/// The surface word that a triangle has in the plain scene, where each masked one has a record of its own, in
+/// the order of ids. masked: those before it; counts this one.
+inline uint32_t flatWord(uint32_t word, uint32_t& masked) {
+  return (word & kSurfaceMasked) == 0 ? word : (word & ~kSurfaceIndex) | (masked++ & kSurfaceIndex);
+}
+
+/// The surfaces of the plain scene that a scene with instances stands for. Throws Error where there are more
+/// masked triangles than records can be numbered, and std::bad_alloc.
+Surfaces flatSurfaces(const Scene& scene);
+
 /// The plain scene that a scene with instances stands for: its plain positions, then those of each instance
-/// in turn. A plain scene is returned as it is. Throws std::bad_alloc.
+/// in turn. A plain scene is returned as it is. Throws as flatSurfaces.
 Scene flatten(Scene scene);
 
 }  // namespace sightline

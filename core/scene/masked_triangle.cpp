@@ -54,4 +54,9 @@ std::optional<MaskedTriangle> maskedTriangle(const Surfaces& surfaces, uint32_t 
       uvec4(inUnits(x[2], bits), inUnits(y[2], bits), mask, bits)};
 }
 
+MaskedTriangle mirrored(const MaskedTriangle& triangle) {
+  const uvec4 &ab = triangle.corners_ab, &c = triangle.corner_c_mask;
+  return {uvec4(ab.x, ab.y, c.x, c.y), uvec4(ab.z, ab.w, c.z, c.w)};
+}
+
 }  // namespace sightline

@@ -19,4 +19,7 @@ uint32_t addMask(Surfaces& surfaces, uint32_t width, uint32_t height, glm::uvec2
 std::optional<MaskedTriangle> maskedTriangle(const Surfaces& surfaces, uint32_t mask,
                                              const glm::dvec2 (&places)[3]);
 
+/// The record of the same triangle with its second and third corner in each other's place.
+MaskedTriangle mirrored(const MaskedTriangle& triangle);
+
 }  // namespace sightline

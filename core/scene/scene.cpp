@@ -4,11 +4,15 @@
 #include <tbb/parallel_reduce.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
 #include <memory>
 #include <new>
+
+#include "core/scene/instances.h"
+#include "core/scene/masked_triangle.h"
 
 #define SL_INSTANCES_PARAM const Scene& scene
 #define SL_INSTANCE_IDS(k) instanceIds(scene, k)
@@ -61,6 +65,33 @@ class Hasher {
   std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_;
 };
 
+void hashSurfaces(const Scene& scene, Hasher& hasher) {
+  const auto add = [&](const auto& list) {
+    const uint64_t size = list.size();
+    hasher.add(&size, 1);
+    hasher.add(list.data(), list.size());
+  };
+  const Surfaces& surfaces = scene.surfaces;
+  if (scene.hasInstances()) {
+    const uint64_t count = scene.triangleCount();
+    uint32_t next = 0;
+    hasher.add(&count, 1);
+    hasher.addMade(count, [&](uint64_t i) { return flatWord(scene.surfaceOf(uint32_t(i)), next); });
+    const uint64_t masked = countSurfaces(scene).masked;
+    hasher.add(&masked, 1);
+    uint32_t id = 0;
+    hasher.addMade(masked, [&](uint64_t) {
+      while ((scene.surfaceOf(id) & kSurfaceMasked) == 0) ++id;
+      return scene.maskPlaces(id++);
+    });
+  } else {
+    add(surfaces.words);
+    add(surfaces.masked);
+  }
+  add(surfaces.masks);
+  add(surfaces.texels);
+}
+
 }  // namespace
 
 StoredTriangle Scene::stored(uint32_t id) const {
@@ -75,6 +106,27 @@ uint32_t Scene::runEnd(uint32_t id, StoredTriangle at) const {
       std::upper_bound(instances.begin(), instances.end(), id,
                        [](uint32_t value, const SceneInstance& i) { return value < i.first_id; });
   return next == instances.end() ? triangleCount() : next->first_id;
+}
+
+MaskedTriangle Scene::maskPlaces(uint32_t id) const {
+  const StoredTriangle at = stored(id);
+  const MaskedTriangle& its = surfaces.masked[surfaces.of(at.triangle) & kSurfaceIndex];
+  return at.instance != kNoTriangle && instances[at.instance].mirrors ? mirrored(its) : its;
+}
+
+SurfaceCounts countSurfaces(const Scene& scene) {
+  SurfaceCounts counts;
+  if (scene.surfaces.empty()) return counts;
+  const auto add = [&](uint32_t first, uint32_t count, uint64_t times) {
+    for (uint32_t i = first; i < first + count; ++i) countSurface(counts, scene.surfaces.words[i], times);
+  };
+  add(0, scene.plainTriangles(), 1);
+  std::vector<uint64_t> uses(scene.meshes.size(), 0);
+  for (const SceneInstance& instance : scene.instances) ++uses[instance.mesh];
+  for (size_t i = 0; i < uses.size(); ++i) {
+    add(scene.meshes[i].first_triangle, scene.meshes[i].triangle_count, uses[i]);
+  }
+  return counts;
 }
 
 glm::uvec3 Scene::vertexNumbers(uint32_t id) const {
@@ -108,17 +160,7 @@ uint64_t hashScene(const Scene& scene) {
   if (scene.offset != glm::dvec3(0.0)) {
     hasher.add(&scene.offset, 1);
   }
-  const auto add = [&](const auto& list) {
-    const uint64_t size = list.size();
-    hasher.add(&size, 1);
-    hasher.add(list.data(), list.size());
-  };
-  if (const Surfaces& surfaces = scene.surfaces; !surfaces.empty()) {
-    add(surfaces.words);
-    add(surfaces.masked);
-    add(surfaces.masks);
-    add(surfaces.texels);
-  }
+  if (!scene.surfaces.empty()) hashSurfaces(scene, hasher);
   return hasher.digest();
 }
 

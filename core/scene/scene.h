@@ -68,7 +68,7 @@ struct SceneInstance {
 /// is in range; every coordinate is at most kLargestCoordinate in magnitude; the objects' ranges are
 /// ascending, disjoint and cover all triangles; meshes follow the plain triangles and positions, and each
 /// other, without a gap; instances are ascending in first_id and do not overlap; each placement passes
-/// canPlace; a scene with instances has no surfaces.
+/// canPlace; surfaces, where there are any, have a word for each stored triangle.
 struct Scene {
   std::vector<glm::vec3>
       positions;  ///< world space (of meshes: their own), y up by custom; units are the file's
@@ -126,6 +126,13 @@ struct Scene {
   /// Its vertices' numbers, 0 .. vertexCount() - 1: triangles that share one have the same number for it.
   glm::uvec3 vertexNumbers(uint32_t id) const;
 
+  /// What a ray meets at the triangle (core/shared/surface.h).
+  uint32_t surfaceOf(uint32_t id) const {
+    return surfaces.empty() ? 0u : surfaces.of(hasInstances() ? stored(id).triangle : id);
+  }
+  /// Of a masked one: where its corners lie in the mask's image, in the order of corners().
+  MaskedTriangle maskPlaces(uint32_t id) const;
+
   /// Where the triangle's corners are stored: what is kept for each stored triangle is found so.
   StoredTriangle stored(uint32_t id) const;
 
@@ -166,6 +173,9 @@ struct Scene {
 /// Hash of positions and triangles, and of surfaces and offset where there are any (XXH3, 64 bit): what a PVS
 /// depends on. Of a scene with instances that of the plain scene it stands for.
 uint64_t hashScene(const Scene& scene);
+
+/// Of all ids.
+SurfaceCounts countSurfaces(const Scene& scene);
 
 /// Axis-aligned bounds of the vertices that triangles use.
 struct Bounds {

@@ -8,7 +8,7 @@ namespace sightline {
 
 Scene seenThrough(Scene scene, std::span<const NamedTriangles> glass) {
   if (glass.empty()) return scene;
-  scene = flatten(std::move(scene));  // surfaces are kept for each triangle, not for those of meshes
+  scene = flatten(std::move(scene));  // an object may be one place of a mesh
   scene.surfaces.words.resize(scene.triangleCount(), 0);
   for (const NamedTriangles& range : glass) {
     for (uint32_t id = range.first; id - range.first < range.count; ++id) {

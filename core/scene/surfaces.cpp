@@ -25,14 +25,10 @@ SurfaceFeatures featuresOf(const Surfaces& surfaces) {
   return {(all & kSurfaceMasked) != 0, (all & kSurfaceGlass) != 0, (all & kSurfaceFrontOnly) != 0};
 }
 
-SurfaceCounts countSurfaces(const Surfaces& surfaces) {
-  SurfaceCounts counts;
-  for (const uint32_t word : surfaces.words) {
-    counts.masked += (word & kSurfaceMasked) != 0 ? 1 : 0;
-    counts.glass += (word & kSurfaceGlass) != 0 ? 1 : 0;
-    counts.front_only += (word & kSurfaceFrontOnly) != 0 ? 1 : 0;
-  }
-  return counts;
+void countSurface(SurfaceCounts& counts, uint32_t word, uint64_t times) {
+  counts.masked += (word & kSurfaceMasked) != 0 ? times : 0;
+  counts.glass += (word & kSurfaceGlass) != 0 ? times : 0;
+  counts.front_only += (word & kSurfaceFrontOnly) != 0 ? times : 0;
 }
 
 std::vector<uint32_t> packSurfaces(const Surfaces& surfaces, const std::vector<uint32_t>& order) {

@@ -18,12 +18,13 @@ struct SurfaceFeatures {
 /// What rays meet at the triangles of a scene (core/shared/surface.h). A scene whose triangles are all opaque
 /// from both sides has no words, and costs nothing.
 struct Surfaces {
-  std::vector<uint32_t> words;         ///< of each triangle; empty: all are opaque from both sides
+  std::vector<uint32_t> words;         ///< of each stored triangle; empty: all are opaque from both sides
   std::vector<MaskedTriangle> masked;  ///< by index of the words
   std::vector<AlphaMask> masks;
   std::vector<uint32_t> texels;  ///< of all masks
 
   bool empty() const { return words.empty(); }
+  /// Of a stored triangle; Scene::surfaceOf asks by id.
   uint32_t of(uint32_t triangle) const { return words.empty() ? 0u : words[triangle]; }
 };
 
@@ -38,7 +39,8 @@ SurfaceFeatures featuresOf(const Surfaces& surfaces);
 struct SurfaceCounts {
   uint64_t masked = 0, glass = 0, front_only = 0;
 };
-SurfaceCounts countSurfaces(const Surfaces& surfaces);
+/// Adds a triangle with this surface, so often.
+void countSurface(SurfaceCounts& counts, uint32_t word, uint64_t times = 1);
 
 /// All surfaces as devices read them. order: the triangles of the tree's leaves (Bvh::references).
 std::vector<uint32_t> packSurfaces(const Surfaces& surfaces, const std::vector<uint32_t>& order);

@@ -8,6 +8,8 @@
 //   0: where the MaskedTriangles begin   1: where the AlphaMasks begin   2: where the texels begin   3:
 //   unused 4 ...: the surface words, in the order of the triangles in the tree's leaves; then the three parts
 //
+// Triangles of a mesh that is shown in many places have their word once, and so the same surface in each.
+//
 // Which texel a ray meets is decided in whole numbers. The edge functions of the sheared corners
 // (triangle.h), in double, give the shares of the second and third corner as floats, which are cut to
 // multiples of 2^-24; the corners' places in the image are whole numbers too (fractions of a texel); so the
@@ -93,17 +95,20 @@ SL_FUNC int texelAt(uint a, uint b, uint c, uint share_a, uint share_b, uint sha
   return slInt(slUint(place >> (kShareBits + fraction_bits))) - slInt(kTexelOffset >> fraction_bits);
 }
 
-/// Whether the masked triangle `index` holds at these shares of its corners.
-SL_FUNC bool maskHolds(SL_SURFACES_PARAM, uint index, float second, float third) {
+/// Whether the masked triangle `index` holds at these shares of its corners. mirrored: where it is shown, its
+/// second and third corner have changed places (core/shared/placement.h).
+SL_FUNC bool placedMaskHolds(SL_SURFACES_PARAM, uint index, float second, float third, bool mirrored) {
   uint t = SL_SURFACE_WORD(0u) + index * kMaskedTriangleWords;
+  uint b = t + (mirrored ? 4u : 2u);
+  uint c = t + (mirrored ? 2u : 4u);
   uint mask = SL_SURFACE_WORD(1u) + SL_SURFACE_WORD(t + 6u) * kAlphaMaskWords;
   uint bits = SL_SURFACE_WORD(t + 7u);
   uint share_b = min(slUint(max(second, 0.0f) * 16777216.0f), 1u << kShareBits);
   uint share_c = min(slUint(max(third, 0.0f) * 16777216.0f), (1u << kShareBits) - share_b);
   uint share_a = (1u << kShareBits) - share_b - share_c;
-  int x = texelAt(SL_SURFACE_WORD(t), SL_SURFACE_WORD(t + 2u), SL_SURFACE_WORD(t + 4u), share_a, share_b,
-                  share_c, bits);
-  int y = texelAt(SL_SURFACE_WORD(t + 1u), SL_SURFACE_WORD(t + 3u), SL_SURFACE_WORD(t + 5u), share_a, share_b,
+  int x =
+      texelAt(SL_SURFACE_WORD(t), SL_SURFACE_WORD(b), SL_SURFACE_WORD(c), share_a, share_b, share_c, bits);
+  int y = texelAt(SL_SURFACE_WORD(t + 1u), SL_SURFACE_WORD(b + 1u), SL_SURFACE_WORD(c + 1u), share_a, share_b,
                   share_c, bits);
   uint width = SL_SURFACE_WORD(mask);
   uint wrap = SL_SURFACE_WORD(mask + 2u);
@@ -114,14 +119,23 @@ SL_FUNC bool maskHolds(SL_SURFACES_PARAM, uint index, float second, float third)
           1u) != 0u;
 }
 
+SL_FUNC bool maskHolds(SL_SURFACES_PARAM, uint index, float second, float third) {
+  return placedMaskHolds(SL_SURFACES, index, second, third, false);
+}
+
 /// Whether a ray that intersectTriangle says hits the triangle meets something there: not a hole, not the
-/// back of what has only a front.
-SL_FUNC bool surfaceHolds(SL_SURFACES_PARAM, uint surface, ShearedRay ray, vec3 v0, vec3 v1, vec3 v2) {
+/// back of what has only a front. The corners are those in the world; mirrored: as of placedMaskHolds.
+SL_FUNC bool placedSurfaceHolds(SL_SURFACES_PARAM, uint surface, ShearedRay ray, vec3 v0, vec3 v1, vec3 v2,
+                                bool mirrored) {
   if ((surface & (kSurfaceMasked | kSurfaceFrontOnly)) == 0u) return true;
   Passage passage = passageOf(ray, v0, v1, v2);
   if ((surface & kSurfaceFrontOnly) != 0u && !passage.front) return false;
   return (surface & kSurfaceMasked) == 0u ||
-         maskHolds(SL_SURFACES, surface & kSurfaceIndex, passage.share_b, passage.share_c);
+         placedMaskHolds(SL_SURFACES, surface & kSurfaceIndex, passage.share_b, passage.share_c, mirrored);
+}
+
+SL_FUNC bool surfaceHolds(SL_SURFACES_PARAM, uint surface, ShearedRay ray, vec3 v0, vec3 v1, vec3 v2) {
+  return placedSurfaceHolds(SL_SURFACES, surface, ray, v0, v1, v2, false);
 }
 
 SL_NAMESPACE_END

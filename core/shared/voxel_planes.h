@@ -1,6 +1,6 @@
 // The half spaces whose common voxels are those that a triangle meets, or those whose targets it meets
-// (core/voxel/triangle_rows.h, separating_rows.h: what they are and why), in a block of 64 x 64 x 64 voxels.
-// In a device's floats, with all that rounding leaves open said to be open.
+// (core/voxel/triangle_rows.h, separating_rows.h: what they are and why), in a block of 64 x 64 x 64 voxels
+// or a part of it. In a device's floats, with all that rounding leaves open said to be open.
 #ifndef SL_VOXEL_PLANES_H
 #define SL_VOXEL_PLANES_H
 #include "core/shared/voxel_half.h"
@@ -21,8 +21,8 @@ SL_STRUCT(VoxelTriangle) {
   RealPoint a;  ///< without rounding
   RealPoint b;
   RealPoint c;
-  VoxelPlace base;  ///< the block's lowest voxel
-  VoxelPlace low;   ///< what of the triangle's box of voxels is in the block, from its base on
+  VoxelPlace base;  ///< the lowest voxel of the part of a block that is looked at
+  VoxelPlace low;   ///< what of the triangle's box of voxels is in that part, from its base on
   VoxelPlace high;
   RoundedVector normal;
   AxisSigns signs;  ///< of the normal
@@ -31,9 +31,13 @@ SL_STRUCT(VoxelTriangle) {
   bool open;        ///< rounding leaves open what it is like: nothing else is to be trusted but the box
 };
 
+/// Half spaces, all of which hold in the triangle's voxels.
 SL_STRUCT(VoxelPlanes) {
   VoxelHalf at[SL_MOST_VOXEL_PLANES];
+  int source[SL_MOST_VOXEL_PLANES];  ///< what each comes from: sourceOf
   int count;
+  VoxelPlace low;  ///< the voxels are in this box, from the block's lowest on
+  VoxelPlace high;
   bool empty;  ///< there is no such voxel, whatever the half spaces are
   bool open;   ///< rounding leaves open which half spaces there are
 };
@@ -125,7 +129,8 @@ SL_FUNC int highestVoxel(SL_REAL high) {
   return -ceilingOf(-high);
 }
 
-SL_FUNC VoxelTriangle voxelTriangle(RealPoint a, RealPoint b, RealPoint c, VoxelPlace base) {
+/// In 64 x 64 x layers voxels from the base on, layers <= 64.
+SL_FUNC VoxelTriangle voxelTriangle(RealPoint a, RealPoint b, RealPoint c, VoxelPlace base, int layers) {
   VoxelTriangle t;
   t.a = a;
   t.b = b;
@@ -148,7 +153,7 @@ SL_FUNC VoxelTriangle voxelTriangle(RealPoint a, RealPoint b, RealPoint c, Voxel
   t.low.z = max(low.z, 0);
   t.high.x = min(high.x, 63);
   t.high.y = min(high.y, 63);
-  t.high.z = min(high.z, 63);
+  t.high.z = min(high.z, layers - 1);
   t.normal = triangleNormal(a, b, c);
   t.signs = normalSigns(t.normal, a, b, c);
   t.open = t.signs.x == kOpenSign || t.signs.y == kOpenSign || t.signs.z == kOpenSign;
@@ -177,16 +182,20 @@ SL_FUNC AxisSigns axisAlong(int axis) {
   return d;
 }
 
-/// target - (p - base).
-SL_FUNC RealPoint fromCorner(RealPoint target, RealPoint p, VoxelPlace base) {
-  return realPoint(target.x - offsetOf(p.x, base.x), target.y - offsetOf(p.y, base.y),
-                   target.z - offsetOf(p.z, base.z));
+/// halves / 2 - (p - base).
+SL_FUNC RealPoint fromCorner(AxisSigns halves, RealPoint p, VoxelPlace base) {
+  return realPoint(slReal(halves.x) * slReal(0.5f) - offsetOf(p.x, base.x),
+                   slReal(halves.y) * slReal(0.5f) - offsetOf(p.y, base.y),
+                   slReal(halves.z) * slReal(0.5f) - offsetOf(p.z, base.z));
 }
 
-/// The corner of voxel (0, 0, 0) that is farthest along side * signs.
-SL_FUNC RealPoint innerCorner(AxisSigns signs, int side) {
-  return realPoint(slReal(side * signs.x > 0 ? 1 : 0), slReal(side * signs.y > 0 ? 1 : 0),
-                   slReal(side * signs.z > 0 ? 1 : 0));
+/// Twice the corner of voxel (0, 0, 0) that is farthest along side * signs.
+SL_FUNC AxisSigns innerCorner(AxisSigns signs, int side) {
+  AxisSigns halves;
+  halves.x = side * signs.x > 0 ? 2 : 0;
+  halves.y = side * signs.y > 0 ? 2 : 0;
+  halves.z = side * signs.z > 0 ? 2 : 0;
+  return halves;
 }
 
 /// The signs of an edge's gradient.
@@ -200,10 +209,22 @@ SL_FUNC AxisSigns edgeSigns(RoundedVector gradient, RealPoint p, RealPoint q) {
   return signs;
 }
 
+SL_FUNC int countOf(AxisSigns signs) {
+  return (signs.x == 0 ? 0 : 1) + (signs.y == 0 ? 0 : 1) + (signs.z == 0 ? 0 : 1);
+}
+
+/// Of the edge from corner `edge` to the next, or of the triangle's plane (3), seen along axis `axis`, and
+/// the point of a voxel that is asked: halves / 2 from its lowest corner.
+SL_FUNC int sourceOf(int edge, int axis, AxisSigns halves) {
+  return edge + 4 * (axis + 4 * (halves.x + 4 * (halves.y + 4 * halves.z)));
+}
+
 /// Of the voxels that the triangle meets, beside its box. Not for straight ones.
 SL_FUNC VoxelPlanes meetingPlanes(VoxelTriangle t) {
   VoxelPlanes planes;
   planes.count = 0;
+  planes.low = t.low;
+  planes.high = t.high;
   planes.empty = false;
   planes.open = t.open;
   for (int axis = 0; axis < 3; ++axis) {
@@ -228,20 +249,97 @@ SL_FUNC VoxelPlanes meetingPlanes(VoxelTriangle t) {
       RealPoint p = cornerOf(t, from);
       RoundedVector g = edgeGradient(p, cornerOf(t, from == 2 ? 0 : from + 1), along);
       AxisSigns signs = roundedSigns(g);  // one step each: never open
-      int steps = (signs.x == 0 ? 0 : 1) + (signs.y == 0 ? 0 : 1) + (signs.z == 0 ? 0 : 1);
-      if (steps < 2) continue;  // along an axis: the box says the same
-      planes.at[planes.count] =
-          voxelHalf(g, signs, side, fromCorner(innerCorner(signs, side), p, t.base), t.size);
+      if (countOf(signs) < 2) continue;   // along an axis: the box says the same
+      AxisSigns halves = innerCorner(signs, side);
+      planes.source[planes.count] = sourceOf(from, axis, halves);
+      planes.at[planes.count] = voxelHalf(g, signs, side, fromCorner(halves, p, t.base), t.size);
       planes.count = planes.count + 1;
     }
   }
-  int steps = (t.signs.x == 0 ? 0 : 1) + (t.signs.y == 0 ? 0 : 1) + (t.signs.z == 0 ? 0 : 1);
-  if (steps < 2) return planes;  // none, or the box says the same
+  if (countOf(t.signs) < 2) return planes;  // none, or the box says the same
   for (int side = -1; side <= 1; side += 2) {
-    planes.at[planes.count] =
-        voxelHalf(t.normal, t.signs, side, fromCorner(innerCorner(t.signs, side), t.a, t.base), t.size);
+    AxisSigns halves = innerCorner(t.signs, side);
+    planes.source[planes.count] = sourceOf(3, 0, halves);
+    planes.at[planes.count] = voxelHalf(t.normal, t.signs, side, fromCorner(halves, t.a, t.base), t.size);
     planes.count = planes.count + 1;
   }
+  return planes;
+}
+
+SL_FUNC bool sumIsExact(SL_REAL a, SL_REAL b) {
+  return differenceIsExact(a, -b);
+}
+
+/// Of the normal along a target's direction, or kOpenSign.
+SL_FUNC int signAlong(VoxelTriangle t, AxisSigns d) {
+  int x = t.signs.x * d.x;
+  int y = t.signs.y * d.y;
+  int z = t.signs.z * d.z;
+  if (x >= 0 && y >= 0 && z >= 0) return x + y + z > 0 ? 1 : 0;
+  if (x <= 0 && y <= 0 && z <= 0) return -1;
+  int sign = roundedSignAlong(t.normal, d);
+  if (sign != kOpenSign) return sign;
+  RealPoint u = stepOf(t.b, t.a);
+  RealPoint v = stepOf(t.c, t.a);
+  bool exact = stepIsExact(t.b, t.a) && stepIsExact(t.c, t.a);
+  exact = exact && productIsExact(u.y, v.z) && productIsExact(u.z, v.y) && productIsExact(u.z, v.x) &&
+          productIsExact(u.x, v.z) && productIsExact(u.x, v.y) && productIsExact(u.y, v.x);
+  exact = exact && differenceIsExact(u.y * v.z, u.z * v.y) && differenceIsExact(u.z * v.x, u.x * v.z) &&
+          differenceIsExact(u.x * v.y, u.y * v.x);
+  SL_REAL along_x = t.normal.value.x * slReal(d.x);
+  SL_REAL along_y = t.normal.value.y * slReal(d.y);
+  SL_REAL along_z = t.normal.value.z * slReal(d.z);
+  if (!exact || !sumIsExact(along_x, along_y)) return kOpenSign;
+  return signOfReal((along_x + along_y) + along_z);
+}
+
+/// The lowest whole number v with v + halves / 2 >= p; halves: 0, 1 or 2. Exact.
+SL_FUNC int lowestFrom(SL_REAL p, int halves) {
+  int whole = ceilingOf(p);
+  if (halves == 0) return whole;
+  if (halves == 2) return whole - 1;
+  // From 2^23 on floats are whole numbers.
+  if (realAbs(p) >= slReal(8388608))
+    return SL_REAL_IS_FLOAT == 1 || p > slReal(whole) - slReal(0.5f) ? whole : whole - 1;
+  return p <= slReal(whole) - slReal(0.5f) ? whole - 1 : whole;
+}
+
+/// What a half space says that only one coordinate decides: v + halves / 2 - p is not below zero, ties
+/// included, if it rises; else it is below zero, without ties. That is what shifted targets make of ties.
+SL_FUNC VoxelPlanes cutBox(VoxelPlanes planes, AxisSigns rises, RealPoint p, AxisSigns halves,
+                           VoxelPlace base) {
+  if (rises.x != 0) {
+    int from = lowestFrom(p.x, halves.x) - base.x;
+    if (rises.x > 0) planes.low.x = max(planes.low.x, from);
+    if (rises.x < 0) planes.high.x = min(planes.high.x, from - 1);
+  }
+  if (rises.y != 0) {
+    int from = lowestFrom(p.y, halves.y) - base.y;
+    if (rises.y > 0) planes.low.y = max(planes.low.y, from);
+    if (rises.y < 0) planes.high.y = min(planes.high.y, from - 1);
+  }
+  if (rises.z != 0) {
+    int from = lowestFrom(p.z, halves.z) - base.z;
+    if (rises.z > 0) planes.low.z = max(planes.low.z, from);
+    if (rises.z < 0) planes.high.z = min(planes.high.z, from - 1);
+  }
+  return planes;
+}
+
+/// The planes and a half space more: side * (gradient . (v + halves / 2 - p)) > 0.
+SL_FUNC VoxelPlanes withHalf(VoxelPlanes planes, VoxelTriangle t, int edge, RoundedVector gradient,
+                             AxisSigns signs, int side, AxisSigns halves) {
+  RealPoint p = cornerOf(t, edge == 3 ? 0 : edge);
+  if (countOf(signs) == 1) {
+    AxisSigns rises;
+    rises.x = side * signs.x;
+    rises.y = side * signs.y;
+    rises.z = side * signs.z;
+    return cutBox(planes, rises, p, halves, t.base);
+  }
+  planes.source[planes.count] = sourceOf(edge, 0, halves);
+  planes.at[planes.count] = voxelHalf(gradient, signs, side, fromCorner(halves, p, t.base), t.size);
+  planes.count = planes.count + 1;
   return planes;
 }
 
@@ -249,51 +347,134 @@ SL_FUNC VoxelPlanes meetingPlanes(VoxelTriangle t) {
 SL_FUNC VoxelPlanes targetPlanes(VoxelTriangle t, AxisSigns along) {
   VoxelPlanes planes;
   planes.count = 0;
+  planes.low = t.low;
+  planes.high = t.high;
   planes.open = t.open;
-  int side = roundedSignAlong(t.normal, along);
+  int side = t.open ? kOpenSign : signAlong(t, along);
   planes.empty = side == 0;
-  if (side == kOpenSign) planes.open = true;
+  planes.open = side == kOpenSign;
   if (planes.empty || planes.open) return planes;
+  AxisSigns halves;
+  halves.x = 1;
+  halves.y = 1;
+  halves.z = 1;
   for (int edge = 0; edge < 3; ++edge) {
     RealPoint p = cornerOf(t, edge);
     RealPoint q = cornerOf(t, edge == 2 ? 0 : edge + 1);
     RoundedVector g = edgeGradient(p, q, along);
     AxisSigns signs = edgeSigns(g, p, q);
     if (signs.x == kOpenSign || signs.y == kOpenSign || signs.z == kOpenSign) planes.open = true;
-    RealPoint middle = realPoint(slReal(0.5f), slReal(0.5f), slReal(0.5f));
-    planes.at[edge] = voxelHalf(g, signs, side, fromCorner(middle, p, t.base), t.size);
+    planes = withHalf(planes, t, edge, g, signs, side, halves);
   }
   for (int end = -1; end <= 1; end += 2) {
-    RealPoint target =
-        realPoint(slReal(1 + end * along.x) * slReal(0.5f), slReal(1 + end * along.y) * slReal(0.5f),
-                  slReal(1 + end * along.z) * slReal(0.5f));
-    planes.at[end < 0 ? 3 : 4] =
-        voxelHalf(t.normal, t.signs, end * side, fromCorner(target, t.a, t.base), t.size);
+    halves.x = 1 + end * along.x;
+    halves.y = 1 + end * along.y;
+    halves.z = 1 + end * along.z;
+    planes = withHalf(planes, t, 3, t.normal, t.signs, end * side, halves);
   }
-  planes.count = 5;
   return planes;
 }
 
-/// A row's voxels, from the block's lowest on: none where low > high.
-SL_FUNC VoxelRun rowOf(VoxelPlanes planes, VoxelTriangle t, int y, int z) {
-  VoxelRun run;
-  run.low = t.low.x;
-  run.high = t.high.x;
-  bool open = false;
-  for (int i = 0; i < planes.count && run.low <= run.high; ++i) {
-    VoxelHalf h = planes.at[i];
-    SL_REAL value = (h.rest + h.factor.z * slReal(z)) + h.factor.y * slReal(y);
-    if (h.rises.x != 0) {
-      run = narrowRun(run, value, inverseOf(h.factor.x, h.rises.x), h.tolerance, h.rises.x);
-      open = open || run.open;
-    } else if (value < -h.tolerance) {
-      run.high = run.low - 1;
-    } else if (!(value > h.tolerance)) {
-      open = true;
-    }
+/// The part of a row's run that is in a half space. inverse: of factor.x, as inverseOf. open: also what was
+/// open before.
+SL_FUNC VoxelRun narrowRow(VoxelRun row, VoxelHalf h, SL_REAL inverse, int y, int z) {
+  SL_REAL value = (h.rest + h.factor.z * slReal(z)) + h.factor.y * slReal(y);
+  bool was_open = row.open;
+  if (h.rises.x != 0) {
+    row = narrowRun(row, value, inverse, h.tolerance, h.rises.x);
+    row.open = row.open || was_open;
+  } else if (value < -h.tolerance) {
+    row.high = row.low - 1;
+  } else if (!(value > h.tolerance)) {
+    row.open = true;
   }
-  run.open = open && run.low <= run.high;
-  return run;
+  return row;
+}
+
+/// x + halves / 2 - p, as seen from a base, and whether that is without rounding.
+SL_STRUCT(ExactReal) {
+  SL_REAL value;
+  bool exact;
+};
+
+SL_FUNC ExactReal exactStep(int x, int halves, SL_REAL p, int base) {
+  int whole = ceilingOf(p);
+  SL_REAL rest = p - slReal(whole);
+  SL_REAL place = slReal(base + x - whole) + slReal(halves) * slReal(0.5f);
+  ExactReal step;
+  step.value = place - rest;
+  step.exact = differenceIsExact(p, slReal(whole)) && differenceIsExact(place, rest);
+  return step;
+}
+
+/// The sign of a half space's value at a voxel, by arithmetic that happens not to round, as it does not for
+/// numbers of few bits; or kOpenSign. along: where targets are sampled; of meetingPlanes any.
+SL_FUNC int exactSignAt(VoxelTriangle t, int source, bool on_axes, AxisSigns along, AxisSigns rises, int x,
+                        int y, int z) {
+  int edge = source & 3;
+  if (on_axes) along = axisAlong((source >> 2) & 3);
+  RealPoint p = cornerOf(t, edge == 3 ? 0 : edge);
+  RoundedVector g = t.normal;
+  bool exact = true;
+  if (edge == 3) {
+    RealPoint u = stepOf(t.b, t.a);
+    RealPoint v = stepOf(t.c, t.a);
+    exact = stepIsExact(t.b, t.a) && stepIsExact(t.c, t.a);
+    exact = exact && productIsExact(u.y, v.z) && productIsExact(u.z, v.y) && productIsExact(u.z, v.x) &&
+            productIsExact(u.x, v.z) && productIsExact(u.x, v.y) && productIsExact(u.y, v.x);
+    exact = exact && differenceIsExact(u.y * v.z, u.z * v.y) && differenceIsExact(u.z * v.x, u.x * v.z) &&
+            differenceIsExact(u.x * v.y, u.y * v.x);
+  } else {
+    RealPoint q = cornerOf(t, edge == 2 ? 0 : edge + 1);
+    g = edgeGradient(p, q, along);
+    RealPoint s = stepOf(p, q);
+    exact = stepIsExact(p, q);
+    exact = exact && differenceIsExact(s.y * slReal(along.z), s.z * slReal(along.y)) &&
+            differenceIsExact(s.z * slReal(along.x), s.x * slReal(along.z)) &&
+            differenceIsExact(s.x * slReal(along.y), s.y * slReal(along.x));
+  }
+  ExactReal step_x = exactStep(x, (source >> 4) & 3, p.x, t.base.x);
+  ExactReal step_y = exactStep(y, (source >> 6) & 3, p.y, t.base.y);
+  ExactReal step_z = exactStep(z, (source >> 8) & 3, p.z, t.base.z);
+  exact = exact && (g.value.x == slReal(0) || (step_x.exact && productIsExact(g.value.x, step_x.value)));
+  exact = exact && (g.value.y == slReal(0) || (step_y.exact && productIsExact(g.value.y, step_y.value)));
+  exact = exact && (g.value.z == slReal(0) || (step_z.exact && productIsExact(g.value.z, step_z.value)));
+  SL_REAL a = g.value.x * step_x.value;
+  SL_REAL b = g.value.y * step_y.value;
+  SL_REAL c = g.value.z * step_z.value;
+  // The sign of a rounded sum of two numbers is that of their sum.
+  if (!exact || (!sumIsExact(a, b) && c != slReal(0))) return kOpenSign;
+  int side = rises.x != 0   ? rises.x * signOfReal(g.value.x)
+             : rises.y != 0 ? rises.y * signOfReal(g.value.y)
+                            : rises.z * signOfReal(g.value.z);
+  return side * signOfReal((a + b) + c);
+}
+
+/// What a row's run is in a half space that narrowRow left open. closed: ties hold; else those of shifted
+/// targets.
+SL_FUNC VoxelRun decideRow(VoxelRun row, VoxelTriangle t, VoxelHalf h, int source, bool closed,
+                           AxisSigns along, SL_REAL inverse, int y, int z) {
+  int at = 0;
+  if (h.rises.x != 0) {
+    SL_REAL value = (h.rest + h.factor.z * slReal(z)) + h.factor.y * slReal(y);
+    SL_REAL end = -value * inverse;
+    // Then one voxel at most is not told by rounded numbers.
+    if (!(h.tolerance * realAbs(inverse) < slReal(0.125f)) || !(realAbs(end) < slReal(1000000))) return row;
+    at = ceilingOf(end - slReal(0.5f));
+  }
+  int sign = exactSignAt(t, source, closed, along, h.rises, at, y, z);
+  if (sign == kOpenSign) return row;
+  if (sign == 0 && closed) sign = 1;
+  if (sign == 0) sign = h.rises.x != 0 ? h.rises.x : (h.rises.y != 0 ? h.rises.y : h.rises.z);
+  row.open = false;
+  if (h.rises.x > 0) {
+    row.low = max(row.low, sign > 0 ? at : at + 1);
+  } else if (h.rises.x < 0) {
+    row.high = min(row.high, sign > 0 ? at : at - 1);
+  } else if (sign < 0) {
+    row.high = row.low - 1;
+  }
+  return row;
 }
 
 SL_NAMESPACE_END

@@ -61,20 +61,27 @@ inline void keepNearer(float t, uint32_t id, Hit& best) {
   if (t > 0 && (t < best.t || (t == best.t && id < best.triangle))) best = {t, id};
 }
 
+/// A triangle as a ray meets it: corners in the world, and kInstance... bits of what placed it.
+struct MetTriangle {
+  Corners corners;
+  uint32_t id;
+  uint32_t bits;
+};
+
 /// A hit on a triangle with a surface of its own. Glass may lie as near as the best hit, whatever the ids.
 inline void considerSurface(const uint32_t* surfaces, uint32_t place, const ShearedRay& ray,
-                            const TriangleRecord& record, float t, Hit& best, std::vector<Hit>* glass) {
+                            const MetTriangle& met, float t, Hit& best, std::vector<Hit>* glass) {
   const uint32_t surface = surfaces[kSurfaceHeaderWords + place];
   const bool is_glass = (surface & kSurfaceGlass) != 0;
   if (is_glass && glass == nullptr) return;
-  if (!(t > 0 && (t < best.t || (t == best.t && (is_glass || record.id < best.triangle))))) return;
-  const float* v = record.vertices;
-  if (!surfaceHolds(surfaces, surface, ray, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}))
+  if (!(t > 0 && (t < best.t || (t == best.t && (is_glass || met.id < best.triangle))))) return;
+  if (!placedSurfaceHolds(surfaces, surface, ray, met.corners.a, met.corners.b, met.corners.c,
+                          (met.bits & kInstanceMirrors) != 0))
     return;
   if (is_glass) {
-    glass->push_back({t, record.id});
+    glass->push_back({t, met.id});
   } else {
-    best = {t, record.id};
+    best = {t, met.id};
   }
 }
 
@@ -146,14 +153,15 @@ Hit CpuTracer::walk(const Ray& ray, [[maybe_unused]] std::vector<Hit>* glass) co
   if (!hasDirection(ray)) return best;
   // A ray with a NaN or an infinity in it would sort its boxes into no order; it hits nothing.
   if (!std::isfinite(dot3(xyz3(ray.origin), vec3(1)) + dot3(xyz3(ray.direction), vec3(1)))) return best;
-  if (bvh_.hasInstances()) return traceInstances(ray);
+  if (bvh_.hasInstances()) return traceInstances<kSurfaces>(ray, glass);
   const ShearedRay sheared = shearRay(ray);
   walkTree(bvh_.nodes8.data(), 0, boxRay(ray, scene_reach_), best, [&](uint32_t first, uint32_t count) {
     for (uint32_t i = first; i < first + count; ++i) {
       const float* v = triangles_[i].vertices;
-      const float t = intersectTriangle(sheared, {v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]});
+      const Corners corners = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}};
+      const float t = intersectTriangle(sheared, corners.a, corners.b, corners.c);
       if constexpr (kSurfaces) {
-        considerSurface(surfaces_.data(), i, sheared, triangles_[i], t, best, glass);
+        considerSurface(surfaces_.data(), i, sheared, {corners, triangles_[i].id, 0}, t, best, glass);
       } else {
         keepNearer(t, triangles_[i].id, best);
       }
@@ -162,7 +170,8 @@ Hit CpuTracer::walk(const Ray& ray, [[maybe_unused]] std::vector<Hit>* glass) co
   return best;
 }
 
-Hit CpuTracer::traceInstances(const Ray& ray) const {
+template <bool kSurfaces>
+Hit CpuTracer::traceInstances(const Ray& ray, [[maybe_unused]] std::vector<Hit>* glass) const {
   Hit best{INFINITY, kNoTriangle};
   const ShearedRay sheared = shearRay(ray);
   const BoxRay world = boxRay(ray, scene_reach_);
@@ -178,7 +187,13 @@ Hit CpuTracer::traceInstances(const Ray& ray) const {
           const float* v = triangles_[i].vertices;
           Corners t = {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}};
           if (!in_place) t = placeCorners(instance.place, instance.roots.z, t.a, t.b, t.c);
-          keepNearer(intersectTriangle(sheared, t.a, t.b, t.c), instance.ids.x + triangles_[i].id, best);
+          const uint32_t id = instance.ids.x + triangles_[i].id;
+          const float distance = intersectTriangle(sheared, t.a, t.b, t.c);
+          if constexpr (kSurfaces) {
+            considerSurface(surfaces_.data(), i, sheared, {t, id, instance.roots.z}, distance, best, glass);
+          } else {
+            keepNearer(distance, id, best);
+          }
         }
       });
     }

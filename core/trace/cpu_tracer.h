@@ -41,7 +41,8 @@ class CpuTracer {
   template <bool kSurfaces>
   Hit walk(const Ray& ray, std::vector<Hit>* glass) const;
 
-  Hit traceInstances(const Ray& ray) const;
+  template <bool kSurfaces>
+  Hit traceInstances(const Ray& ray, std::vector<Hit>* glass) const;
 
   const Bvh& bvh_;
   std::vector<TriangleRecord> triangles_;

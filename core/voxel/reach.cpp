@@ -28,12 +28,22 @@ BlockSide fullSide() {
   return full;
 }
 
-// The parts of a block that no triangle meets.
-void freeOf(const VoxelBlock& block, BlockBits& free) {
+// The parts of a block that no triangle meets, as far as paths may go.
+void freeOf(const VoxelBlock& block, const std::optional<VoxelBox>& within, BlockBits& free) {
   free.clear();
   free.insert(block.bricks);
   for (int z = 0; z < kBlockSide; ++z) {
     for (int y = 0; y < kBlockSide; ++y) free.row(y, z) = ~free.row(y, z);
+  }
+  if (!within) return;
+  const glm::ivec3 low = block.place * kBlockSide;
+  const VoxelBox part =
+      overlapOf({within->low - low, within->high - low}, {glm::ivec3(0), glm::ivec3(kBlockSide - 1)});
+  for (int z = 0; z < kBlockSide; ++z) {
+    for (int y = 0; y < kBlockSide; ++y) {
+      const bool is_in = z >= part.low.z && z <= part.high.z && y >= part.low.y && y <= part.high.y;
+      free.row(y, z) &= is_in ? rowBits(part.low.x, part.high.x) : 0;
+    }
   }
 }
 
@@ -74,6 +84,7 @@ class Flood {
     if (is_outside_) return;
     is_outside_ = true;
     for (int side = 0; side < kSides; ++side) {
+      if (!mayLeave(side)) continue;
       VoxelBox layer = box_;
       const int axis = side / 2;
       ((side & 1) != 0 ? layer.low : layer.high)[axis] = ((side & 1) != 0 ? box_.high : box_.low)[axis];
@@ -124,7 +135,7 @@ class Flood {
         BlockBits free, reached;
         for (size_t i = range.begin(); i < range.end(); ++i) {
           Mixed& mixed = mixed_[begin + i];
-          freeOf(grid_.blocks[begin + i], free);
+          freeOf(grid_.blocks[begin + i], options_.within, free);
           reached.clear();
           mixed.reached.addTo(reached);
           mixed.reached = {};
@@ -179,7 +190,7 @@ class Flood {
     const VoxelBox part =
         overlapOf({voxels.low - low, voxels.high - low}, {glm::ivec3(0), glm::ivec3(kBlockSide - 1)});
     BlockBits free, reached;
-    freeOf(grid_.blocks[surface], free);
+    freeOf(grid_.blocks[surface], options_.within, free);
     mixed.reached.addTo(reached);
     uint64_t any = 0;
     for (int z = part.low.z; z <= part.high.z; ++z) {
@@ -204,6 +215,7 @@ class Flood {
   }
 
   void reachWhole(const glm::ivec3& block) {
+    if (options_.within && !holds({options_.within->low >> 6, options_.within->high >> 6}, block)) return;
     uint8_t& is_reached = is_reached_[indexOf(block)];
     if (is_reached != 0) return;
     is_reached = 1;
@@ -225,7 +237,15 @@ class Flood {
   void leave(const glm::ivec3& block, int side, const BlockSide& bits) {
     const glm::ivec3 next = block + stepThrough(side);
     if (holds(box_, next)) return enter(next, side ^ 1, bits);
-    reachOutside();
+    if (mayLeave(side)) reachOutside();
+  }
+
+  // Whether paths may go on beyond the box through this side of it.
+  bool mayLeave(int side) const {
+    if (!options_.within) return true;
+    const int axis = side / 2;
+    return (side & 1) != 0 ? options_.within->high[axis] > box_.high[axis] * kBlockSide + (kBlockSide - 1)
+                           : options_.within->low[axis] < box_.low[axis] * kBlockSide;
   }
 
   // From blocks that are reached as a whole.
@@ -239,7 +259,7 @@ class Flood {
 
   void flood(uint32_t surface, BlockBits& free, BlockBits& reached, Passed& passed) {
     Mixed& mixed = mixed_[surface];
-    freeOf(grid_.blocks[surface], free);
+    freeOf(grid_.blocks[surface], options_.within, free);
     reached.clear();
     mixed.reached.addTo(reached);
     const Sides before = mixed.is_fresh ? Sides{} : sidesOf(reached);

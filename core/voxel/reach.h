@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,10 @@ struct ReachOptions {
   /// Boxes of voxels to start from: all of their voxels that no triangle meets; each has one at least.
   std::vector<VoxelBox> boxes = {};
   bool from_outside = false;  ///< start from far outside of the scene, too
+  /// No path leaves these voxels, which hold all places to start from: what nothing passes that stays within,
+  /// such as sight between places in a box, does not come in from outside. Of voxels beyond it nothing is
+  /// said.
+  std::optional<VoxelBox> within = {};
   /// Told, on the caller's thread, what share of the space was looked at: 0 to 1, ascending.
   std::function<void(double done)> progress = {};
   const std::atomic<bool>* stop = nullptr;  ///< ends it with Interrupted when it becomes true

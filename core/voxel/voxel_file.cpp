@@ -15,18 +15,22 @@
 namespace sightline {
 namespace {
 
-constexpr uint32_t kSectionBlocks = 0x4b4f4c42;     // "BLOK"
-constexpr uint32_t kSectionTriangles = 0x53495254;  // "TRIS"
+constexpr uint32_t kSectionBlocks = 0x4b4f4c42;      // "BLOK"
+constexpr uint32_t kSectionTriangles = 0x53495254;   // "TRIS"
+constexpr uint32_t kSectionAttributes = 0x52545441;  // "ATTR"
 constexpr size_t kBlocksAChunk = 64;
 constexpr int kBricksABlock = 512;
 constexpr int kMostLevels = 32;
 // More than what 64 blocks of full bricks take: what claims more is damage.
+constexpr uint64_t kMostChunkAttributes = uint64_t(kBlocksAChunk) * kBricksABlock * 512 * 8;
 constexpr uint64_t kMostChunkBytes = uint64_t(kBlocksAChunk) * (16 + kBricksABlock * 66);
 
 Bytes headPayload(const VoxelHead& head) {
   ByteWriter out;
   out.number(int32_t(head.lattice.exponent));
-  out.number(uint32_t(head.has_triangles));
+  out.number(uint32_t(head.separation));
+  out.number(uint32_t(head.has_triangles) | uint32_t(head.has_normals) << 1 |
+             uint32_t(head.has_objects) << 2);
   out.number(head.scene_hash);
   out.number(head.triangle_count);
   for (int axis = 0; axis < 3; ++axis) out.number(head.offset[axis]);
@@ -37,12 +41,15 @@ VoxelHead readHead(std::span<const uint8_t> payload) {
   ByteReader in(payload);
   VoxelHead head;
   head.lattice.exponent = in.number<int32_t>();
-  const uint32_t has_triangles = in.number<uint32_t>();
-  head.has_triangles = has_triangles != 0;
+  const uint32_t separation = in.number<uint32_t>(), parts = in.number<uint32_t>();
+  head.separation = Separation(separation);
+  head.has_triangles = (parts & 1) != 0;
+  head.has_normals = (parts & 2) != 0;
+  head.has_objects = (parts & 4) != 0;
   head.scene_hash = in.number<uint64_t>();
   head.triangle_count = in.number<uint32_t>();
   for (int axis = 0; axis < 3; ++axis) head.offset[axis] = in.number<double>();
-  if (!in.finished() || has_triangles > 1)
+  if (!in.finished() || parts > 7 || separation > uint32_t(Separation::k6))
     throw Damage("the head is not as long as it should be, or of a later version");
   if (head.lattice.exponent < -100 || head.lattice.exponent > 100) {
     throw Damage(fmt::format("a voxel of 2^{} is out of range", head.lattice.exponent));
@@ -87,6 +94,35 @@ Bytes trianglesPayload(std::span<const VoxelBlock> blocks) {
   out.number(uint64_t(raw.size()));
   out.raw(compress(raw));
   return out.bytes();
+}
+
+// Of a block after the other: normals, then objects.
+Bytes attributesPayload(std::span<const VoxelBlock> blocks) {
+  ByteWriter raw;
+  for (const VoxelBlock& block : blocks) {
+    for (const uint32_t normal : block.normals) raw.number(normal);
+  }
+  for (const VoxelBlock& block : blocks) {
+    for (const uint32_t object : block.objects) raw.number(object);
+  }
+  return compress(raw.bytes());
+}
+
+void readAttributes(const VoxelHead& head, std::span<const uint8_t> payload, std::span<VoxelBlock> blocks) {
+  const auto raw = decompress(payload, kMostChunkAttributes);
+  if (!raw) throw Damage("attributes that cannot be unpacked");
+  ByteReader content(*raw);
+  const auto readAll = [&](std::vector<uint32_t> VoxelBlock::*values) {
+    for (VoxelBlock& block : blocks) {
+      const uint64_t count = block.count();
+      if (count * 4 > content.left()) throw Damage("attributes that are cut off");
+      (block.*values).resize(count);
+      for (uint32_t& value : block.*values) value = content.number<uint32_t>();
+    }
+  };
+  if (head.has_normals) readAll(&VoxelBlock::normals);
+  if (head.has_objects) readAll(&VoxelBlock::objects);
+  if (!content.finished()) throw Damage("more attributes than voxels");
 }
 
 void readBrick(ByteReader& in, VoxelBrick& brick, bool& any) {
@@ -251,6 +287,11 @@ VoxelFile parse(std::span<const uint8_t> bytes, Sections& sections) {
       if (kind != kSectionTriangles) throw Damage("blocks without their ids");
       readTriangles(triangles, blocks, file.head.triangle_count);
     }
+    if (level == 0 && (file.head.has_normals || file.head.has_objects)) {
+      const auto attributes = sections.next(kind);
+      if (kind != kSectionAttributes) throw Damage("blocks without their attributes");
+      readAttributes(file.head, attributes, blocks);
+    }
     addBlocks(file, level, std::move(blocks));
     ++chunks;
   }
@@ -258,9 +299,12 @@ VoxelFile parse(std::span<const uint8_t> bytes, Sections& sections) {
 
 }  // namespace
 
-VoxelHead headOf(const Scene& scene, const Lattice& lattice, bool has_triangles) {
-  return {.lattice = lattice,
-          .has_triangles = has_triangles,
+VoxelHead headOf(const Scene& scene, const VoxelizeOptions& options) {
+  return {.lattice = options.lattice,
+          .separation = options.separation,
+          .has_triangles = options.with_triangles,
+          .has_normals = options.attributes.normals,
+          .has_objects = options.attributes.objects,
           .scene_hash = hashScene(scene),
           .triangle_count = scene.triangleCount(),
           .offset = scene.offset};
@@ -298,6 +342,11 @@ void VoxelWriter::putChunk(size_t level, std::vector<VoxelBlock>& blocks) {
     const Bytes triangles = writeSection(kSectionTriangles, trianglesPayload(blocks));
     counts.triangle_bytes += triangles.size();
     put(triangles);
+  }
+  if (level == 0 && (head_.has_normals || head_.has_objects)) {
+    const Bytes attributes = writeSection(kSectionAttributes, attributesPayload(blocks));
+    counts.attribute_bytes += attributes.size();
+    put(attributes);
   }
   ++chunks_;
   blocks.clear();

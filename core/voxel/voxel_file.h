@@ -9,6 +9,7 @@
 #include "core/pvs/checksum.h"
 #include "core/voxel/pyramid.h"
 #include "core/voxel/voxel_grid.h"
+#include "core/voxel/voxelize.h"
 
 // Voxels in a file: .slv, as docs/slv-format.md specifies it.
 namespace sightline {
@@ -18,15 +19,18 @@ inline constexpr uint32_t kVoxelVersion = 1;
 
 /// What a file's voxels are of.
 struct VoxelHead {
-  Lattice lattice;              ///< of the finest level
+  Lattice lattice;  ///< of the finest level
+  Separation separation = Separation::kConservative;
   bool has_triangles = false;   ///< the finest level's blocks have ids
+  bool has_normals = false;     ///< and normals a voxel
+  bool has_objects = false;     ///< and objects
   uint64_t scene_hash = 0;      ///< hashScene
   uint32_t triangle_count = 0;  ///< of the scene
   glm::dvec3 offset{0.0};  ///< Scene::offset: a voxel's place in the scene's file is its place here and this
   bool operator==(const VoxelHead&) const = default;
 };
 
-VoxelHead headOf(const Scene& scene, const Lattice& lattice, bool has_triangles);
+VoxelHead headOf(const Scene& scene, const VoxelizeOptions& options);
 
 /// A file's content: the finest level first, each next one coarser(), the last a root.
 struct VoxelFile {
@@ -37,7 +41,7 @@ struct VoxelFile {
 /// Counts of a level.
 struct VoxelLevelCounts {
   uint64_t voxels = 0, blocks = 0, bricks = 0;
-  uint64_t geometry_bytes = 0, triangle_bytes = 0;  ///< in the file
+  uint64_t geometry_bytes = 0, triangle_bytes = 0, attribute_bytes = 0;  ///< in the file
 };
 
 /// Writes a .slv file block by block: the finest level's as they come, coarser ones of them, which are kept

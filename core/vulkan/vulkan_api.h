@@ -21,6 +21,8 @@ namespace sightline {
   X(vkDeviceWaitIdle)                 \
   X(vkQueueSubmit)                    \
   X(vkCreateFence)                    \
+  X(vkCreateSemaphore)                \
+  X(vkDestroySemaphore)               \
   X(vkDestroyFence)                   \
   X(vkResetFences)                    \
   X(vkWaitForFences)                  \

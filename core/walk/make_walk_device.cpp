@@ -25,10 +25,11 @@ void requireWalkDevice(const std::string& name) {
 #endif
 }
 
-std::unique_ptr<WalkDevice> makeWalkDevice(const std::string& name, const WalkScene& scene, WalkClock clock) {
+std::unique_ptr<WalkDevice> makeWalkDevice(const std::string& name, const WalkScene& scene, WalkClock clock,
+                                           [[maybe_unused]] const WalkDeviceOptions& options) {
   requireWalkDevice(name);
 #ifdef SL_WITH_VULKAN
-  if (name != "cpu") return makeVulkanWalkDevice(name, scene, std::move(clock));
+  if (name != "cpu") return makeVulkanWalkDevice(name, scene, std::move(clock), options);
 #endif
   return makeSoftwareWalkDevice(scene, std::move(clock));
 }

@@ -7,6 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/base/interrupted.h"
+#include "core/measure/error_regions.h"
+#include "core/walk/alpha_cover.h"
 #include "core/walk/pop_watch.h"
 #include "core/walk/traced_frame.h"
 
@@ -37,6 +39,23 @@ FrameTimes medianTimes(std::span<const std::vector<FrameTimes>> replays, size_t 
   return times;
 }
 
+/// Pixels of the largest group of false ones that touch. wrong: ascending.
+uint32_t largestRegion(const uvec2& size, std::span<const size_t> wrong) {
+  if (wrong.empty()) return 0;
+  std::vector<PixelRun> runs;
+  for (const size_t pixel : wrong) {
+    const auto at = uint32_t(pixel);
+    if (!runs.empty() && runs.back().last + 1 == at && at % size.x != 0) {
+      runs.back().last = at;
+    } else {
+      runs.push_back({at, at, 1});
+    }
+  }
+  ImageError error;
+  ErrorRegions(size.x, size.y).count(runs, {&error, 1});
+  return error.largest_region;
+}
+
 /// A method while it is replayed.
 struct Running {
   std::unique_ptr<WalkPlayer> player;
@@ -55,10 +74,12 @@ class Replayer {
         options_(options),
         tracer_(tracer),
         clock_(clock),
-        hooks_(hooks) {}
+        hooks_(hooks),
+        cover_(scene.scene, scene.draw.drawables) {}
 
   WalkReplay run(const std::vector<std::string>& methods) {
     const double start = clock_();
+    result_.alpha = cover_.any();
     for (const std::string& name : methods) {
       result_.methods.push_back({.name = name});
       running_.push_back({device_.play(name, options_.method), {}, {}, {}});
@@ -116,6 +137,9 @@ class Replayer {
         if (frame + 1 >= options_.in_flight) {
           const uint32_t done = frame + 1 - options_.in_flight;
           running.player->gpuTimes(done, times[done]);
+          if (repeat > 0 && times[done].frame > found.slowest.milliseconds) {
+            found.slowest = {done, times[done].frame, running.player->spans(done)};
+          }
         }
       }
       lastGpuTimes(*running.player, times);
@@ -175,9 +199,11 @@ class Replayer {
         }
         if (!options_.check) continue;
         const FrameCheck check = player.check();
-        found.checks.push_back(summary(check));
+        std::vector<size_t> wrong;
+        if (check.false_pixels > 0) wrong = player.falsePixels();
+        found.checks.push_back(summary(check, frame, wrong, player));
         pops.frame(frame, check.missing);
-        keepWorst(found, frame, check, player);
+        keepWorst(found, frame, std::move(wrong));
         if (method == 0) traceFrame(frame, player);
       }
     } catch (...) {
@@ -187,23 +213,28 @@ class Replayer {
     pops.end(found);
   }
 
-  CheckedFrame summary(const FrameCheck& check) const {
+  CheckedFrame summary(const FrameCheck& check, uint32_t frame, std::span<const size_t> wrong,
+                       WalkPlayer& player) {
     CheckedFrame result{check.false_pixels,   check.near_pixels,  check.largest(),
                         check.missing.size(), check.shown.size(), 0};
+    const Camera& camera = frames_.cameras[frame];
+    result.largest_region = largestRegion(camera.size, wrong);
+    if (!wrong.empty() && cover_.any())
+      result.behind_alpha = cover_.count(camera, wrong, player.referenceDepth());
     for (const uint32_t drawable : check.shown) {
       result.optimal_triangles += scene_.draw.drawables.list[drawable].triangle_count;
     }
     return result;
   }
 
-  void keepWorst(MethodReplay& found, uint32_t frame, const FrameCheck& check, WalkPlayer& player) const {
+  void keepWorst(MethodReplay& found, uint32_t frame, std::vector<size_t> wrong) const {
     const auto worse = [](const FalseFrame& a, const FalseFrame& b) {
       return a.pixels.size() > b.pixels.size();
     };
     const bool full = found.worst.size() >= options_.kept_frames;
-    if (check.false_pixels == 0 || options_.kept_frames == 0) return;
-    if (full && check.false_pixels <= found.worst.back().pixels.size()) return;
-    FalseFrame now{frame, player.falsePixels()};
+    if (wrong.empty() || options_.kept_frames == 0) return;
+    if (full && wrong.size() <= found.worst.back().pixels.size()) return;
+    FalseFrame now{frame, std::move(wrong)};
     found.worst.insert(std::upper_bound(found.worst.begin(), found.worst.end(), now, worse), std::move(now));
     if (found.worst.size() > options_.kept_frames) found.worst.pop_back();
   }
@@ -221,6 +252,7 @@ class Replayer {
   Tracer* tracer_;
   const WalkClock& clock_;
   const ReplayHooks& hooks_;
+  AlphaCover cover_;
   std::vector<Running> running_;
   WalkReplay result_;
   uint64_t done_ = 0, all_ = 0;

@@ -15,6 +15,8 @@ namespace sightline {
 struct WalkFrames {
   std::vector<Camera> cameras;
   std::vector<uint32_t> cuts;  ///< frames to which the camera jumps, ascending; the first frame is none
+  /// Views out of cells of a set: of each frame the cell, whose set is drawn; empty: the camera's cell is.
+  std::vector<uint32_t> cells = {};
 };
 
 struct ReplayOptions {
@@ -33,6 +35,8 @@ struct CheckedFrame {
   uint64_t largest = 0;                                   ///< most false pixels of one drawable
   uint64_t missing = 0;                                   ///< drawables with false pixels
   uint64_t optimal_drawables = 0, optimal_triangles = 0;  ///< with a pixel, and all triangles of those
+  uint64_t largest_region = 0;  ///< most false pixels that touch each other, at corners too
+  uint64_t behind_alpha = 0;    ///< false pixels that show what is behind holes or glass (AlphaCover)
   bool operator==(const CheckedFrame&) const = default;
 };
 
@@ -50,12 +54,20 @@ struct FalseFrame {
   std::vector<size_t> pixels;  ///< their numbers, row by row, ascending
 };
 
+/// The slowest frame of all repeats of a method.
+struct SlowestFrame {
+  uint32_t frame = 0;
+  double milliseconds = 0;  ///< 0: there was none
+  WalkFrameSpans spans = {};
+};
+
 /// What one method did. Lists are by frame, and shorter than the walk where it was stopped.
 struct MethodReplay {
   std::string name;
   uint32_t repeats = 0;  ///< whole ones, of which times are medians; 0: of a part of one
   bool warm_up = false;  ///< times are of the replay that is dropped, as it was stopped before any other
   std::vector<FrameTimes> times = {};  ///< empty: it was not run
+  SlowestFrame slowest = {};
   std::vector<FrameCounts> counts = {};
   std::vector<CheckedFrame> checks = {};          ///< empty: not checked
   std::vector<Pop> pops = {};                     ///< the longest first, at most kMostPops
@@ -80,6 +92,7 @@ struct TracedFrame {
 struct WalkReplay {
   std::vector<MethodReplay> methods;
   std::vector<TracedFrame> traced;
+  bool alpha = false;    ///< something in the scene has holes or is glass
   bool complete = true;  ///< false: stopped, or `problem`
   std::string problem;   ///< what ended it, in a line; empty: nothing
   int problem_code = 0;  ///< exit code for it

@@ -109,6 +109,7 @@ class SoftwarePlayer : public WalkPlayer {
     for (uint32_t& id : shown) id = id == kNoTriangle ? id : owner_[id];
     return shown;
   }
+  std::vector<float> referenceDepth() override { return reference_.depth(); }
   void forget() override { method_->forget(); }
 
  private:

@@ -29,12 +29,12 @@ class VulkanPlayer : public WalkPlayer {
     const double drawn = clock_();
     const CpuTimes cpu = drawing_.ring().cpuTimes();
     if (numbers_.empty() || numbers_.back().number + 1 != number) numbers_.clear();
-    numbers_.push_back({number, drawing_.frame()});
+    numbers_.push_back({number, drawing_.frame(), start, drawn, 0});
     if (numbers_.size() >= in_flight) drawing_.ring().gpuTimes(numbers_[numbers_.size() - in_flight].frame);
     if (numbers_.size() > kRemembered) numbers_.erase(numbers_.begin());
     const double wait = cpu.look + cpu.wait;
-    times.cpu = {drawn - start - cpu.record - cpu.submit - wait, cpu.record, cpu.submit, wait,
-                 clock_() - drawn};
+    const double end = numbers_.back().end = clock_();
+    times.cpu = {drawn - start - cpu.record - cpu.submit - wait, cpu.record, cpu.submit, wait, end - drawn};
   }
 
   void gpuTimes(uint64_t number, FrameTimes& times) override {
@@ -44,6 +44,35 @@ class VulkanPlayer : public WalkPlayer {
     std::copy(gpu.part.begin(), gpu.part.end(), times.gpu.begin());
     times.gpu[kGpuPartCount - 1] = gpu.rest;
     times.gpu_frame = gpu.frame;
+  }
+
+  WalkFrameSpans spans(uint64_t number) override {
+    WalkFrameSpans spans;
+    const auto found = std::ranges::find(numbers_, number, &Numbered::number);
+    if (found == numbers_.end()) return spans;
+    const FrameSpans its = drawing_.ring().spans(found->frame);
+    double at = 0, submitted = 0;
+    const auto add = [&](CpuPart part, double until) {
+      if (until > at) spans.cpu.push_back({part, at, until});
+      at = std::max(at, until);
+    };
+    const double length = found->drawn - found->begin;
+    for (const auto& span : its.cpu) {
+      if (span.begin > found->drawn) break;  // the waiting for other frames
+      const bool first = span.part == CpuWork::submit && submitted == 0;
+      if (first) submitted = span.begin - found->begin;
+      add(CpuPart::traverse, span.begin - found->begin);
+      add(span.part == CpuWork::record   ? CpuPart::record
+          : span.part == CpuWork::submit ? CpuPart::submit
+                                         : CpuPart::wait,
+          span.end - found->begin);
+    }
+    add(CpuPart::traverse, length);
+    add(CpuPart::idle, found->end - found->begin);
+    for (const auto& span : its.gpu) {
+      spans.gpu.push_back({size_t(span.part), submitted + span.begin, submitted + span.end});
+    }
+    return spans;
   }
 
   FrameCheck check() override {
@@ -64,6 +93,7 @@ class VulkanPlayer : public WalkPlayer {
   std::vector<uint32_t> referenceDrawables() override {
     return drawablesShown(check_.referenceIds(), drawing_.mesh().drawables().list.size());
   }
+  std::vector<float> referenceDepth() override { return check_.referenceDepth(); }
 
  protected:
   virtual void drawFrame(const Camera& camera, uint64_t number) = 0;
@@ -76,7 +106,8 @@ class VulkanPlayer : public WalkPlayer {
  private:
   static constexpr size_t kRemembered = 8;
   struct Numbered {
-    uint64_t number, frame;  ///< of the walk, of the drawing
+    uint64_t number, frame;    ///< of the walk, of the drawing
+    double begin, drawn, end;  ///< by the clock: until the processor has drawn it, and waited for others
   };
   std::vector<Numbered> numbers_;  ///< of the last frames
   Camera camera_{};
@@ -109,9 +140,9 @@ class HostPlayer : public VulkanPlayer {
 class GpuPlayer : public VulkanPlayer {
  public:
   GpuPlayer(VulkanDrawing& drawing, DepthCheck& check, const WalkClock& clock, const WalkScene& scene,
-            GpuMethod method, bool by_set, OutsideCells outside)
+            GpuMethod method, bool by_set, const CellChoice& cells)
       : VulkanPlayer(drawing, check, clock), scene_(scene), culling_(drawing, method) {
-    if (by_set) cell_.emplace(*scene.units, outside);
+    if (by_set) cell_.emplace(*scene.units, cells);
   }
 
   FrameCounts counts() override {
@@ -168,11 +199,14 @@ GpuMethod gpuMethod(const std::string& name) {
 
 class VulkanWalkDevice : public WalkDevice {
  public:
-  VulkanWalkDevice(const std::string& selector, const WalkScene& scene, WalkClock clock)
+  VulkanWalkDevice(const std::string& selector, const WalkScene& scene, WalkClock clock,
+                   const WalkDeviceOptions& options)
       : scene_(scene),
         clock_(std::move(clock)),
-        drawing_(selector, scene.scene, scene.draw.drawables,
-                 scene.units == nullptr ? no_lists_ : scene.units->triangles, {.clock = clock_}),
+        drawing_(
+            selector, scene.scene, scene.draw.drawables,
+            scene.units == nullptr ? no_lists_ : scene.units->triangles,
+            {.clock = clock_, .chain = options.semaphores ? SubmitChain::semaphores : SubmitChain::barriers}),
         check_(drawing_) {}
 
   DeviceInfo info() const override { return drawing_.context().info(); }
@@ -184,7 +218,7 @@ class VulkanWalkDevice : public WalkDevice {
     const WalkMethodInfo& info = walkMethod(method);
     if (info.on_gpu) {
       return std::make_unique<GpuPlayer>(drawing_, check_, clock_, scene_, gpuMethod(method), info.needs_pvs,
-                                         options.outside);
+                                         options.cells);
     }
     return std::make_unique<HostPlayer>(drawing_, check_, clock_,
                                         makeCullMethod(method, scene_.draw, scene_.units, options));
@@ -205,8 +239,8 @@ void requireVulkanWalkDevice(const std::string& selector) {
 }
 
 std::unique_ptr<WalkDevice> makeVulkanWalkDevice(const std::string& selector, const WalkScene& scene,
-                                                 WalkClock clock) {
-  return std::make_unique<VulkanWalkDevice>(selector, scene, std::move(clock));
+                                                 WalkClock clock, const WalkDeviceOptions& options) {
+  return std::make_unique<VulkanWalkDevice>(selector, scene, std::move(clock), options);
 }
 
 }  // namespace sightline

@@ -8,6 +8,6 @@ void requireVulkanWalkDevice(const std::string& selector);
 
 /// Draws on a Vulkan device (core/draw/vulkan). selector: as of VulkanDrawing.
 std::unique_ptr<WalkDevice> makeVulkanWalkDevice(const std::string& selector, const WalkScene& scene,
-                                                 WalkClock clock);
+                                                 WalkClock clock, const WalkDeviceOptions& options);
 
 }  // namespace sightline

@@ -35,6 +35,9 @@ class WalkPlayer {
   /// GPU times of frame `number` of this player, one of the last few drawn; waits until it has run.
   virtual void gpuTimes(uint64_t number, FrameTimes& times) = 0;
 
+  /// Likewise what happened when.
+  virtual WalkFrameSpans spans(uint64_t) { return {}; }
+
   /// What the last frame did; may wait until it has run.
   virtual FrameCounts counts() = 0;
 
@@ -47,6 +50,8 @@ class WalkPlayer {
   /// should show (kNoTriangle: none).
   virtual std::vector<size_t> falsePixels() = 0;
   virtual std::vector<uint32_t> referenceDrawables() = 0;
+  /// Likewise how deep each pixel should be: reversed, 0 where it shows nothing.
+  virtual std::vector<float> referenceDepth() = 0;
 
   /// As if just made.
   virtual void forget() = 0;
@@ -66,12 +71,17 @@ class WalkDevice {
   virtual std::unique_ptr<WalkPlayer> play(const std::string& method, const WalkMethodOptions& options) = 0;
 };
 
+struct WalkDeviceOptions {
+  bool semaphores = false;  ///< Vulkan: submits wait for each other by semaphores besides barriers
+};
+
 /// Throws Error, as makeWalkDevice does, for a name of no device that draws: before there is a scene.
 void requireWalkDevice(const std::string& name);
 
 /// "cpu": draws on the processor, slowly, the same everywhere. "vulkan", "vulkan:INDEX",
 /// "vulkan:PART-OF-NAME": a device that draws. Throws Error that names what there is, or what the device
 /// lacks.
-std::unique_ptr<WalkDevice> makeWalkDevice(const std::string& name, const WalkScene& scene, WalkClock clock);
+std::unique_ptr<WalkDevice> makeWalkDevice(const std::string& name, const WalkScene& scene, WalkClock clock,
+                                           const WalkDeviceOptions& options = {});
 
 }  // namespace sightline

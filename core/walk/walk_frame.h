@@ -33,6 +33,21 @@ struct FrameTimes {
   double gpu_frame = 0;  ///< from its first command to the end of its last
 };
 
+/// When the parts of a frame were worked on, in milliseconds since the processor began it. Of both in order;
+/// empty where they are not known.
+struct WalkFrameSpans {
+  template <typename Part>
+  struct Span {
+    Part part;
+    double begin = 0, end = 0;
+  };
+  std::vector<Span<CpuPart>> cpu;
+  /// By kGpuPartNames. From the first submit on: the GPU's own clock starts no earlier.
+  std::vector<Span<size_t>> gpu;
+
+  bool empty() const { return cpu.empty() && gpu.empty(); }
+};
+
 /// How a frame differs from one that draws everything, bit by bit in depth.
 struct FrameCheck {
   struct Missing {

@@ -53,8 +53,8 @@ std::unique_ptr<CullMethod> makeCullMethod(const std::string& name, const DrawSc
   if (name == "chc++") return cullChcPlus(scene, plain, options.schedule);
   if (name == "opti-chc++") return cullChcPlus(scene, options.chc, options.schedule);
   if (name == "late") return cullLate(scene);
-  if (units != nullptr && name == "pvs") return cullPvsList(scene, *units, options.outside);
-  if (units != nullptr && name == "pvs+vfc") return cullPvsFrustum(scene, *units, options.outside);
+  if (units != nullptr && name == "pvs") return cullPvsList(scene, *units, options.cells);
+  if (units != nullptr && name == "pvs+vfc") return cullPvsFrustum(scene, *units, options.cells);
   throw std::invalid_argument("makeCullMethod: " + name);
 }
 

@@ -25,7 +25,7 @@ const WalkMethodInfo& walkMethod(const std::string& name);
 struct WalkMethodOptions {
   ChcOptions chc;  ///< of opti-chc++; chc++ takes its batch size, frames, multiqueries and bounds
   Schedule schedule;
-  OutsideCells outside = OutsideCells::all;
+  CellChoice cells = {};
 };
 
 /// A method that chooses on the processor, by a name of walkMethods(). units: of the set; must be given where

@@ -10,7 +10,8 @@
 namespace sightline {
 namespace {
 
-constexpr size_t kPointsALine = 240;  // of a chart over frames
+constexpr size_t kPointsALine = 240;          // of a chart over frames
+constexpr double kThinnestSpan = 1.0 / 4000;  // of a span chart: less is no pixel wide
 
 const MethodReplay* methodOf(const WalkReport& report, std::string_view name) {
   for (const MethodReplay& m : report.replay.methods) {
@@ -194,20 +195,39 @@ void addTimes(HtmlReport& page, const WalkReport& report) {
       Of::most, all, [](const MethodReplay& m, size_t i) { return m.times[i].frame; })});
 }
 
-void addParts(HtmlReport& page, const WalkReport& report) {
-  const MethodReplay* m = mainMethod(report);
-  if (m == nullptr) return;
-  page.section("Where the time goes");
-  std::vector<ReportChart> charts;
-  if (report.gpu_times) {
-    charts.push_back(partsChart(report, *m, "GPU time by part", kGpuPartNames, &FrameTimes::gpu));
-  }
-  charts.push_back(partsChart(report, *m, "Processor time by part", kCpuPartNames, &FrameTimes::cpu));
-  page.charts(charts);
-  const auto worst = std::ranges::max_element(m->times, {}, &FrameTimes::frame);
+std::string slowestTitle(const MethodReplay& m, size_t frame, double ms) {
+  return fmt::format("The slowest frame of {}: {}, {} ms", m.name, frame, digits(ms));
+}
+
+/// What happened when in the slowest frame of all repeats.
+ReportSpans spansOf(const MethodReplay& m) {
+  const SlowestFrame& slowest = m.slowest;
+  double end = 0;
+  for (const auto& span : slowest.spans.cpu) end = std::max(end, span.end);
+  for (const auto& span : slowest.spans.gpu) end = std::max(end, span.end);
   ReportSpans spans{
-      .title = fmt::format("The slowest frame of {}: {}, {} ms", m->name, worst - m->times.begin(),
-                           digits(worst->frame)),
+      .title = slowestTitle(m, slowest.frame, slowest.milliseconds),
+      .note = fmt::format("Of all repeats. The GPU's clock is another: its first command is put where "
+                          "the first submit begins, and may start later. Spans below {} ms are left out.",
+                          digits(end * kThinnestSpan)),
+      .unit = "ms",
+      .rows = {{"processor", {}}, {"GPU", {}}}};
+  const auto add = [&](std::vector<ReportSpan>& row, const char* name, double begin, double until) {
+    if (until - begin >= end * kThinnestSpan) row.push_back({name, begin, until});
+  };
+  for (const auto& span : slowest.spans.cpu) {
+    add(spans.rows[0].second, kCpuPartNames[size_t(span.part)], span.begin, span.end);
+  }
+  for (const auto& span : slowest.spans.gpu)
+    add(spans.rows[1].second, kGpuPartNames[span.part], span.begin, span.end);
+  return spans;
+}
+
+/// Where nobody knows when: how much of the slowest frame each part takes.
+ReportSpans partsInARow(const WalkReport& report, const MethodReplay& m) {
+  const auto worst = std::ranges::max_element(m.times, {}, &FrameTimes::frame);
+  ReportSpans spans{
+      .title = slowestTitle(m, size_t(worst - m.times.begin()), worst->frame),
       .note = "How much of it each part takes, put in a row: parts alternate many times in a frame.",
       .unit = "ms",
       .rows = {}};
@@ -223,7 +243,20 @@ void addParts(HtmlReport& page, const WalkReport& report) {
   };
   row("processor", kCpuPartNames, worst->cpu);
   if (report.gpu_times) row("GPU", kGpuPartNames, worst->gpu);
-  page.spans(spans);
+  return spans;
+}
+
+void addParts(HtmlReport& page, const WalkReport& report) {
+  const MethodReplay* m = mainMethod(report);
+  if (m == nullptr) return;
+  page.section("Where the time goes");
+  std::vector<ReportChart> charts;
+  if (report.gpu_times) {
+    charts.push_back(partsChart(report, *m, "GPU time by part", kGpuPartNames, &FrameTimes::gpu));
+  }
+  charts.push_back(partsChart(report, *m, "Processor time by part", kCpuPartNames, &FrameTimes::cpu));
+  page.charts(charts);
+  page.spans(m->slowest.spans.empty() ? partsInARow(report, *m) : spansOf(*m));
 }
 
 void addQueries(HtmlReport& page, const WalkReport& report) {
@@ -312,11 +345,59 @@ void addSetTable(HtmlReport& page, const WalkReport& report) {
       "that is reached.");
 }
 
+/// Table 8.1: sets of small cells against those of large ones.
+void addCellTable(HtmlReport& page, const WalkReport& report) {
+  const std::vector<CellStretch> stretches = cellStretchesOf(report.frames);
+  if (stretches.empty()) return;
+  ReportTable table{.columns = {"cell", "triangles", "share"}};
+  std::vector<const MethodReplay*> methods;
+  for (const MethodReplay& m : report.replay.methods) {
+    if (m.times.empty()) continue;
+    methods.push_back(&m);
+    table.columns.push_back(m.name + ", ms");
+  }
+  const MethodReplay *none = methodOf(report, "none"), *pvs = methodOf(report, "pvs");
+  const bool both = none != nullptr && pvs != nullptr;
+  if (both) table.columns.insert(table.columns.end(), {"pvs against none", "factor x share"});
+  if (pvs != nullptr && !pvs->checks.empty()) table.columns.push_back("wrong share of pvs");
+  const double pixels = double(report.width) * report.height;
+  for (const CellStretch& stretch : stretches) {
+    const WalkedCell& cell = report.cells[stretch.cell];
+    const double share = double(cell.triangles) / double(std::max<uint64_t>(report.scene.triangles, 1));
+    std::vector<std::string> row = {cell.name, std::to_string(cell.triangles),
+                                    fmt::format("{} %", digits(100 * share))};
+    const auto of = [&](const MethodReplay& m) {
+      return summarize(m, stretch.frames.begin, stretch.frames.end);
+    };
+    for (const MethodReplay* m : methods) {
+      const WalkSummary s = of(*m);
+      row.push_back(s.timed > 0 ? digits(s.mean) : "-");
+    }
+    if (both) {
+      const double slow = of(*none).mean, fast = of(*pvs).mean;
+      row.push_back(times(slow, fast));
+      row.push_back(fast > 0 && slow > 0 ? fmt::format("{:.0f} %", 100 * slow / fast * share) : "-");
+    }
+    if (pvs != nullptr && !pvs->checks.empty()) {
+      const WalkSummary s = of(*pvs);
+      row.push_back(s.checked > 0
+                        ? fmt::format("{:.3g} %", 100 * double(s.false_pixels) / (pixels * double(s.checked)))
+                        : "-");
+    }
+    table.rows.push_back(row);
+  }
+  page.section("What the set of each cell is worth");
+  page.table(table);
+  page.text(
+      "Views out of each cell, drawn by its own set: what smaller cells gain, and what larger ones lose.");
+}
+
 void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pictures) {
   ReportTable table{
       .columns = {"method", "false pixels", "of all pixels", "frames with any", "most in a frame",
-                  "objects went missing", "longest", "of object", "from frame"},
+                  "largest region", "objects went missing", "longest", "of object", "from frame"},
       .short_names = true};
+  if (report.replay.alpha) table.columns.emplace_back("behind holes or glass");
   const double pixels = double(report.width) * report.height;
   bool any = false;
   for (const MethodReplay& m : report.replay.methods) {
@@ -327,10 +408,11 @@ void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pi
     table.rows.push_back(
         {m.name, std::to_string(s.false_pixels),
          fmt::format("{:.3g} %", 100 * double(s.false_pixels) / (pixels * double(m.checks.size()))),
-         std::to_string(s.false_frames), std::to_string(s.most_false), counted(m.pop_count, "time"),
-         popped ? counted(m.pops.front().frames, "frame") : "-",
+         std::to_string(s.false_frames), std::to_string(s.most_false), std::to_string(s.largest_region),
+         counted(m.pop_count, "time"), popped ? counted(m.pops.front().frames, "frame") : "-",
          popped ? std::to_string(m.pops.front().drawable) : "-",
          popped ? std::to_string(m.pops.front().first_frame) : "-"});
+    if (report.replay.alpha) table.rows.back().push_back(std::to_string(s.behind_alpha));
   }
   if (!any) return;
   page.section("What is wrong");
@@ -339,8 +421,14 @@ void addWrong(HtmlReport& page, const WalkReport& report, const WalkPictures& pi
       "pixel is "
       "false if it shows something farther away. An object is missing for as many frames in a row as it has "
       "false "
-      "pixels.");
+      "pixels. A region is of pixels that touch each other, at corners too.");
   page.table(table);
+  if (report.replay.alpha) {
+    page.text(
+        "Behind holes or glass: false pixels in front of which the ray meets a surface that one sees "
+        "through. A set "
+        "is wrong there where its bake took such surfaces for solid.");
+  }
   uint64_t other = 0, unexplained = 0;
   for (const TracedFrame& t : report.replay.traced)
     other += t.other_pixels, unexplained += t.unexplained_pixels;
@@ -396,6 +484,7 @@ HtmlReport walkPage(const WalkReport& report, const WalkPictures& pictures, cons
     page.pictures(pictures.drawn);
   }
   addSetTable(page, report);
+  addCellTable(page, report);
   addWrong(page, report, pictures);
   page.section("Scene and walk");
   const ChcOptions& chc = report.options.method.chc;
@@ -405,6 +494,7 @@ HtmlReport walkPage(const WalkReport& report, const WalkPictures& pictures, cons
               {"field of view", fmt::format("{:g} degrees", report.fov)},
               {"frames in flight", std::to_string(report.options.in_flight)},
               {"schedule", report.options.method.schedule.fixed ? "fixed" : "live"},
+              {"submits wait by", report.chain.empty() ? "-" : report.chain},
               {"batch size", std::to_string(chc.batch_size)},
               {"assumed visible", counted(chc.assumed_frames, "frame")},
               {"set", report.pvs.empty() ? "none" : report.pvs},

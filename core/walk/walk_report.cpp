@@ -65,6 +65,8 @@ Json methodJson(const WalkReport& report, const MethodReplay& method) {
                      {"false_pixels", checked.false_pixels},
                      {"frames_with_false", checked.false_frames},
                      {"most_false_pixels", checked.most_false},
+                     {"largest_region", checked.largest_region},
+                     {"behind_alpha", checked.behind_alpha},
                      {"near_pixels", checked.near_pixels},
                      {"times_missing", method.pop_count},
                      {"longest_missing", pops}};
@@ -82,12 +84,14 @@ Json methodJson(const WalkReport& report, const MethodReplay& method) {
   return json;
 }
 
-Json optionsJson(const ReplayOptions& o) {
+Json optionsJson(const WalkReport& report) {
+  const ReplayOptions& o = report.options;
   const ChcOptions& chc = o.method.chc;
   return {{"repeats", o.repeats},
           {"in_flight", o.in_flight},
           {"schedule", o.method.schedule.fixed ? "fixed" : "live"},
           {"seed", o.method.schedule.seed},
+          {"chain", report.chain},
           {"batch", chc.batch_size},
           {"assume", chc.assumed_frames},
           {"multi_queries", chc.multi_queries},
@@ -95,9 +99,33 @@ Json optionsJson(const ReplayOptions& o) {
           {"c_queue", chc.c_queue},
           {"batching", chc.batching},
           {"second_condition", chc.late_issue},
-          {"outside", o.method.outside == OutsideCells::all       ? "all"
-                      : o.method.outside == OutsideCells::nearest ? "nearest"
-                                                                  : "error"}};
+          {"outside", o.method.cells.outside == OutsideCells::all       ? "all"
+                      : o.method.cells.outside == OutsideCells::nearest ? "nearest"
+                                                                        : "error"}};
+}
+
+/// What the set of each cell is worth at views out of it.
+Json cellsJson(const WalkReport& report) {
+  Json cells = Json::array();
+  for (const CellStretch& stretch : cellStretchesOf(report.frames)) {
+    const WalkedCell& cell = report.cells[stretch.cell];
+    Json methods = Json::object();
+    for (const MethodReplay& m : report.replay.methods) {
+      const WalkSummary s = summarize(m, stretch.frames.begin, stretch.frames.end);
+      Json one = timesJson(s);
+      one.update(countsJson(s));
+      if (s.checked > 0) one["false_pixels"] = s.false_pixels;
+      methods[m.name] = one;
+    }
+    cells.push_back(
+        {{"name", cell.name},
+         {"triangles", cell.triangles},
+         {"share", double(cell.triangles) / double(std::max<uint64_t>(report.scene.triangles, 1))},
+         {"first_frame", stretch.frames.begin},
+         {"end_frame", stretch.frames.end},
+         {"methods", methods}});
+  }
+  return cells;
 }
 
 Json tracedJson(const WalkReplay& replay) {
@@ -157,10 +185,13 @@ WalkSummary summarize(const MethodReplay& method, size_t begin, size_t end) {
   }
   for (size_t i = begin; i < std::min(end, method.checks.size()); ++i) {
     const CheckedFrame& c = method.checks[i];
+    ++s.checked;
     s.false_pixels += c.false_pixels;
     s.near_pixels += c.near_pixels;
     s.false_frames += c.false_pixels > 0 ? 1 : 0;
     s.most_false = std::max(s.most_false, c.false_pixels);
+    s.largest_region = std::max(s.largest_region, c.largest_region);
+    s.behind_alpha += c.behind_alpha;
   }
   return s;
 }
@@ -173,6 +204,17 @@ std::vector<WalkStretch> stretchesOf(const WalkFrames& frames) {
     begin = cut;
   }
   stretches.push_back({begin, uint32_t(frames.cameras.size())});
+  return stretches;
+}
+
+std::vector<CellStretch> cellStretchesOf(const WalkFrames& frames) {
+  std::vector<CellStretch> stretches;
+  for (uint32_t frame = 0; frame < frames.cells.size(); ++frame) {
+    if (stretches.empty() || stretches.back().cell != frames.cells[frame]) {
+      stretches.push_back({frames.cells[frame], {frame, frame}});
+    }
+    ++stretches.back().frames.end;
+  }
   return stretches;
 }
 
@@ -269,9 +311,10 @@ Json walkJson(const WalkReport& report) {
       {"width", report.width},
       {"height", report.height},
       {"fov", report.fov},
-      {"options", optionsJson(report.options)},
+      {"options", optionsJson(report)},
       {"seconds", report.replay.seconds},
       {"methods", methods},
+      {"cells", cellsJson(report)},
       {"left_out", left_out},
       {"traced", tracedJson(report.replay)}};
 }
@@ -283,9 +326,10 @@ std::string walkCsv(const WalkReport& report) {
   }
   for (const char* part : kGpuPartNames) columns.push_back(fmt::format("gpu_{}_ms", part));
   for (const char* name :
-       {"submits", "draws", "objects", "triangles", "queries", "multi_queries", "failed_queries",
-        "retest_queries", "query_boxes", "node_visits", "waits", "outside", "false_pixels", "near_pixels",
-        "largest_false", "missing_objects", "optimal_objects", "optimal_triangles"}) {
+       {"submits",         "draws",           "objects",           "triangles",      "queries",
+        "multi_queries",   "failed_queries",  "retest_queries",    "query_boxes",    "node_visits",
+        "waits",           "outside",         "false_pixels",      "near_pixels",    "largest_false",
+        "missing_objects", "optimal_objects", "optimal_triangles", "largest_region", "behind_alpha"}) {
     columns.emplace_back(name);
   }
   Csv csv(columns);
@@ -312,8 +356,8 @@ std::string walkCsv(const WalkReport& report) {
         count(counted, value);
       }
       const CheckedFrame k = checked ? m.checks[i] : CheckedFrame{};
-      for (const uint64_t value :
-           {k.false_pixels, k.near_pixels, k.largest, k.missing, k.optimal_drawables, k.optimal_triangles}) {
+      for (const uint64_t value : {k.false_pixels, k.near_pixels, k.largest, k.missing, k.optimal_drawables,
+                                   k.optimal_triangles, k.largest_region, k.behind_alpha}) {
         count(checked, value);
       }
       csv.row(row);

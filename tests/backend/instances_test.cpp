@@ -23,6 +23,7 @@ using testing_support::randomInstances;
 using testing_support::randomMesh;
 using testing_support::randomPlacement;
 using testing_support::TestRandom;
+using testing_support::withSurfaces;
 
 bool sameBits(const glm::vec3& a, const glm::vec3& b) {
   for (int i = 0; i < 3; ++i) {
@@ -89,6 +90,52 @@ TEST(Instances, StandForThePlainScene) {
   }
 }
 
+/// What is told of surfaces: by id, and in the hash.
+TEST(Instances, HaveTheSurfacesOfThePlainScene) {
+  for (uint64_t seed = 1; seed <= 10; ++seed) {
+    const Scene scene = withSurfaces(randomInstances(seed, 1 + uint32_t(seed) * 3, 60), seed);
+    checkScene(scene);
+    const Scene flat = flatten(scene);
+    checkScene(flat);
+    EXPECT_EQ(hashScene(scene), hashScene(flat)) << seed;
+    EXPECT_NE(hashScene(scene),
+              hashScene(withSurfaces(randomInstances(seed, 1 + uint32_t(seed) * 3, 60), 99)));
+    const SurfaceCounts counts = countSurfaces(scene), wanted = countSurfaces(flat);
+    EXPECT_EQ(counts.masked, wanted.masked);
+    EXPECT_EQ(counts.glass, wanted.glass);
+    EXPECT_EQ(counts.front_only, wanted.front_only);
+    EXPECT_EQ(flat.surfaces.masked.size(), wanted.masked);
+    uint32_t mirrored = 0;
+    for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
+      const StoredTriangle at = scene.stored(id);
+      const uint32_t word = scene.surfaces.words[at.triangle], flat_word = flat.surfaces.words[id];
+      ASSERT_EQ(scene.surfaceOf(id), word);
+      ASSERT_EQ(word & ~kSurfaceIndex, flat_word & ~kSurfaceIndex);
+      if ((word & kSurfaceMasked) == 0) continue;
+      const MaskedTriangle &its = scene.surfaces.masked[word & kSurfaceIndex],
+                           &plain = flat.surfaces.masked[flat_word & kSurfaceIndex];
+      const auto places = [](const MaskedTriangle& t) {
+        const uvec4 &ab = t.corners_ab, &c = t.corner_c_mask;
+        return std::array{glm::uvec2(ab.x, ab.y), glm::uvec2(ab.z, ab.w), glm::uvec2(c.x, c.y),
+                          glm::uvec2(c.z, c.w)};
+      };
+      auto expected = places(its);
+      if (at.instance != kNoTriangle && scene.instances[at.instance].mirrors) {
+        std::swap(expected[1], expected[2]);
+        ++mirrored;
+      }
+      ASSERT_EQ(places(plain), expected) << seed << " triangle " << id;
+    }
+    EXPECT_TRUE(mirrored > 0 || seed < 3) << seed;
+  }
+}
+
+TEST(Instances, RefuseSurfacesOfOtherTriangles) {
+  Scene scene = withSurfaces(randomInstances(1, 5, 20), 1);
+  scene.surfaces.words.pop_back();
+  EXPECT_THROW(checkScene(scene), Error);
+}
+
 /// A mirrored instance shows the same side as the mesh.
 TEST(Instances, KeepTheirFronts) {
   InstancedScene boxes{Scene()};
@@ -149,6 +196,27 @@ TEST_P(InstanceDevices, HitWhatPlainScenesHit) {
   }
 }
 
+/// With holes, glass and sides: hits, and all glass before them.
+TEST_P(InstanceDevices, SeeWhatPlainScenesShowThroughHolesAndGlass) {
+  size_t glass = 0;
+  for (uint64_t seed = 1; seed <= 8; ++seed) {
+    const float reach = seed % 4 == 3 ? 2e3f : seed % 4 == 2 ? 3.0f : 10.0f;
+    const Scene scene = withSurfaces(randomInstances(seed, 60, 200, reach), seed), flat = flatten(scene);
+    const Bvh flat_tree = buildBvh(flat.positions, flat.triangles);
+    const Bvh tree = buildSceneTree(scene, {.spatial_splits = seed % 3 == 0});
+    const std::vector<Ray> rays = raysAt(flat, seed + 100, 10'000, reach);
+    std::vector<Hit> wanted(rays.size()), got(rays.size());
+    const auto reference = makeDevice("cpu", flat, flat_tree), its = device(scene, tree);
+    reference->traceRays(rays, wanted);
+    its->traceRays(rays, got);
+    expectSameHits(rays, got, wanted, fmt::format("{}, seed {}", GetParam(), seed));
+    const std::vector<SeenThrough> through = reference->traceGlass(rays, wanted);
+    EXPECT_EQ(its->traceGlass(rays, got), through) << seed;
+    glass += through.size();
+  }
+  EXPECT_GT(glass, 20'000u);
+}
+
 /// Copies of a mesh in the same place: every hit is a tie, which the lowest id wins.
 TEST_P(InstanceDevices, TheLowestIdWinsTies) {
   TestRandom random(7);
@@ -169,8 +237,10 @@ TEST_P(InstanceDevices, TheLowestIdWinsTies) {
 
 /// Sets, witnesses and statistics of all methods, contained triangles among them.
 TEST_P(InstanceDevices, BakeWhatPlainScenesBake) {
-  for (uint64_t seed = 1; seed <= 2; ++seed) {
-    const Scene scene = randomInstances(seed, 60, 120, 10), flat = flatten(scene);
+  for (const uint64_t seed : {1, 2, 11}) {
+    Scene scene = randomInstances(seed % 10, 60, 120, 10);
+    if (seed > 10) scene = withSurfaces(std::move(scene), seed);
+    const Scene flat = flatten(scene);
     const ViewCell cell = {
         "cell", {1, 2, 3}, seed % 2 == 0 ? glm::dvec3(2, 2, 0) : glm::dvec3(3, 2, 1), {10, 20, 30}};
     EXPECT_EQ(containedTriangles(scene, cell), containedTriangles(flat, cell)) << seed;
@@ -194,6 +264,7 @@ TEST_P(InstanceDevices, BakeWhatPlainScenesBake) {
           << seed << " " << methodName(method);
       EXPECT_EQ(got.stats.border.rays, wanted.stats.border.rays);
       EXPECT_EQ(got.stats.reverse.rays, wanted.stats.reverse.rays);
+      EXPECT_EQ(got.stats.missing_rays, wanted.stats.missing_rays);
     }
   }
 }
@@ -216,6 +287,32 @@ TEST(VulkanInstances, HitNearlyWhatPlainScenesHit) {
     size_t others = 0;
     for (size_t i = 0; i < rays.size(); ++i) others += got[i].triangle != wanted[i].triangle ? 1 : 0;
     EXPECT_LT(others, rays.size() / 50);
+  }
+}
+
+TEST(VulkanInstances, SeeNearlyWhatPlainScenesShowThroughHolesAndGlass) {
+  SL_SKIP_WITHOUT_VULKAN();
+  const Scene scene = withSurfaces(randomInstances(5, 60, 200, 10), 5), flat = flatten(scene);
+  const Bvh tree = buildSceneTree(scene), flat_tree = buildBvh(flat.positions, flat.triangles);
+  const std::vector<Ray> rays = raysAt(flat, 6, 20'000, 10, false);
+  std::vector<Hit> wanted(rays.size());
+  const auto reference = makeDevice("cpu", flat, flat_tree);
+  reference->traceRays(rays, wanted);
+  const std::vector<SeenThrough> through = reference->traceGlass(rays, wanted);
+  EXPECT_GT(through.size(), 5'000u);
+  for (const bool ray_queries : {false, true}) {
+    DeviceOptions options;
+    options.ray_queries = ray_queries;
+    options.part_triangles = 64;  // meshes in several parts
+    std::vector<Hit> got(rays.size());
+    const auto its = makeDevice("vulkan", scene, tree, options);
+    its->traceRays(rays, got);
+    size_t others = 0;
+    for (size_t i = 0; i < rays.size(); ++i) others += got[i].triangle != wanted[i].triangle ? 1 : 0;
+    EXPECT_LT(others, rays.size() / 50);
+    std::vector<SeenThrough> beside;
+    std::ranges::set_symmetric_difference(its->traceGlass(rays, wanted), through, std::back_inserter(beside));
+    EXPECT_LT(beside.size(), through.size() / 50);
   }
 }
 

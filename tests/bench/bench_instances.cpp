@@ -1,8 +1,9 @@
 // What a scene with instances costs: random rays of its cells through two levels, and through the plain scene
 // that it stands for, in turns; with what both take to build, and their memory on the device.
 //
-//   bench_instances SCENE CELLS.json [--device NAME] [--rays N] [--runs N]
+//   bench_instances SCENE CELLS.json [--device NAME] [--rays N] [--runs N] [--holes]
 //
+// --holes: every other stored triangle gets holes, half of its area.
 // The scene must be one that loads with instances. Both find the same triangles, or the run fails (of devices
 // that trace by their own test: says how many differ). Medians of the runs; the first of all warms up and
 // does not count.
@@ -19,6 +20,7 @@
 #include "core/sampling/make_stage_params.h"
 #include "core/sampling/random_segment.h"
 #include "core/scene/instances.h"
+#include "core/scene/masked_triangle.h"
 #include "core/scene/scene_tree.h"
 #include "tests/bench/bench_main.h"
 
@@ -31,7 +33,22 @@ struct Options {
   std::string scene, cells, device = "opencl";
   uint32_t rays = 2'000'000;
   int runs = 5;
+  bool holes = false;
 };
+
+/// Squares, every other one a hole, 32 on each of every other triangle.
+void addHoles(Scene& scene) {
+  constexpr uint32_t kSide = 8;
+  const uint32_t mask = addMask(scene.surfaces, kSide, kSide, {kWrapClamp, kWrapClamp},
+                                [](uint64_t i) { return (i / kSide + i) % 2 == 0; });
+  const glm::dvec2 corners[3] = {{0, 0}, {kSide, 0}, {0, kSide}};
+  const MaskedTriangle places = *maskedTriangle(scene.surfaces, mask, corners);
+  scene.surfaces.words.assign(scene.triangles.size(), 0u);
+  for (size_t i = 0; i < scene.triangles.size(); i += 2) {
+    scene.surfaces.words[i] = kSurfaceMasked | uint32_t(scene.surfaces.masked.size());
+    scene.surfaces.masked.push_back(places);
+  }
+}
 
 double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -84,6 +101,7 @@ double median(std::vector<double> values) {
 void bench(const Options& options) {
   Scene scene = loadScene(options.scene);
   if (!scene.hasInstances()) throw Error(options.scene + ": loads as a plain scene");
+  if (options.holes) addHoles(scene);
   const std::vector<ViewCell> cells = loadCells(options.cells);
   Scene plain = flatten(scene);
   Form forms[2] = {{"instances", std::move(scene), options.device},
@@ -132,5 +150,6 @@ int main(int argc, char** argv) {
   app.add_option("--device", options.device)->capture_default_str();
   app.add_option("--rays", options.rays, "of each cell")->capture_default_str();
   app.add_option("--runs", options.runs)->capture_default_str();
+  app.add_flag("--holes", options.holes, "in every other stored triangle");
   return sightline::benchMain(app, argc, argv, [&] { sightline::bench(options); });
 }

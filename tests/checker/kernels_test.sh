@@ -15,7 +15,7 @@ run() {
     echo 'FAILED: results differ, or the program broke off'
     exit 1
   fi
-  grep 'rays an item:' "$work/said"
+  grep -E 'rays an item:|^voxels:' "$work/said"
   if [[ -s $work/findings ]]; then
     head -60 "$work/findings"
     echo 'FAILED: Oclgrind found this'
@@ -27,8 +27,11 @@ run() {
 # Kernels that ran are those of which Oclgrind counted instructions. It breaks off when it counts over many programs, so
 # those of other scenes are not counted: traceGlass ran, since the sets have the glass that cpu's have.
 run --inst-counts "$program"
-run "$program" surfaces
+run "$program" scenes
 echo "Instructions executed for kernel 'traceGlass':" >>"$work/out"
+# The voxeliser's program has one kernel, without which there would be no voxels.
+run "$program" voxels
+echo "Instructions executed for kernel 'voxelizeBlocks':" >>"$work/out"
 sed -n 's/^kernel //p' "$work/out" | sort -u >"$work/all"
 sed -nE "s/^Instructions executed for kernel '(.*)':$/\1/p" "$work/out" | sort -u >"$work/ran"
 left_out=$(comm -23 "$work/all" "$work/ran")

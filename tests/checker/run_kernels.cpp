@@ -1,6 +1,7 @@
 // Runs every OpenCL kernel on a scene of about 1,000 triangles, to be run under Oclgrind (kernels_test.sh):
-// every method and set, both layouts, and compares what comes out with the device cpu. With an argument: on
-// scenes with surfaces and with instances, for which kernels are compiled apart. Exit 1 where it differs.
+// every method and set, both layouts, and compares what comes out with the device cpu. With the argument
+// "scenes": on scenes with surfaces and with instances, for which kernels are compiled apart. With "voxels":
+// the voxeliser. Exit 1 where it differs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,6 +25,7 @@
 #include "core/shared/random_ray.h"
 #include "core/shared/set.h"
 #include "core/trace/cpu_tracer.h"
+#include "core/voxel/opencl/voxelize_opencl.h"
 #include "tests/support/instanced_scene.h"
 #include "tests/support/random_triangles.h"
 
@@ -190,12 +192,12 @@ void printKernels() {
   while (std::getline(list, name, ';')) fmt::print("kernel {}\n", name);
 }
 
-/// The scene with holes, glass and fronts alone among its triangles.
+/// The scene with holes, glass and fronts alone among its stored triangles.
 Scene withSurfaces(Scene scene) {
   Surfaces& surfaces = scene.surfaces;
   const uint32_t mask =
       addMask(surfaces, 7, 3, {kWrapRepeat, kWrapMirror}, [](uint64_t texel) { return texel % 3 != 0; });
-  for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
+  for (size_t id = 0; id < scene.triangles.size(); ++id) {
     constexpr uint32_t kWords[] = {0, kSurfaceGlass, kSurfaceFrontOnly, kSurfaceMasked};
     uint32_t word = kWords[id % 4];
     if (word == kSurfaceMasked) {
@@ -212,6 +214,7 @@ Scene withSurfaces(Scene scene) {
 void bakeOtherScenes(const Scene& scene, const Bvh& bvh, const ViewCell& cell) {
   const Scene surfaces = withSurfaces(scene);
   const Scene instances = testing_support::randomInstances(3, 20, 40);
+  const Scene instances_with_surfaces = withSurfaces(instances);
   const Bvh two_levels = buildSceneTree(instances);
   ViewCell middle = cell;
   middle.center = glm::dvec3(0);
@@ -220,16 +223,55 @@ void bakeOtherScenes(const Scene& scene, const Bvh& bvh, const ViewCell& cell) {
       bake(surfaces, bvh, cell, rays_per_item, method, SetKind::kArray);
       bake(instances, two_levels, middle, rays_per_item, method, SetKind::kHash);
     }
+    bake(instances_with_surfaces, two_levels, middle, rays_per_item, Method::kGvspp, SetKind::kArray);
   }
 }
 
-void runAll(bool other_scenes) {
+/// Triangles of all sizes and in all directions, some with corners on the lattice, in two blocks.
+void voxelizeAll() {
+  testing_support::Random random(7);
+  Scene scene;
+  for (uint32_t i = 0; i < 40; ++i) {
+    const glm::vec3 middle = random.point(18) + glm::vec3(0, 32, 32);
+    for (int corner = 0; corner < 3; ++corner) {
+      const glm::vec3 place = middle + random.point(i % 8 == 0 ? 12 : 3);
+      scene.positions.push_back(i % 2 == 0 ? place : glm::round(place));
+    }
+    scene.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);
+  }
+  scene.objects.push_back({"all", 0, 40});
+  const std::pair<Separation, bool> kinds[] = {{Separation::kConservative, false},
+                                               {Separation::kConservative, true},
+                                               {Separation::k26, false},
+                                               {Separation::k6, true}};
+  for (const auto& [separation, floats] : kinds) {
+    const VoxelizeOptions options{.lattice = latticeOf(1), .separation = separation};
+    const std::vector<VoxelBlock> wanted = voxelize(scene, options).blocks;
+    std::vector<VoxelBlock> found;
+    uint64_t voxels = 0;
+    const OpenClVoxelized done = voxelizeOpenCl(scene, options, "opencl",
+                                                [&](VoxelBlock&& block) {
+                                                  voxels += block.count();
+                                                  found.push_back(std::move(block));
+                                                },
+                                                {.group = 16, .floats = floats, .bricks = 8, .open_rows = 2});
+    const std::string what = fmt::format("separation {}, {}", int(separation), floats ? "float" : "double");
+    fmt::print("voxels: {}: {} in {} blocks, {} rows open, {} launches again\n", what, voxels, found.size(),
+               done.open_rows, done.repeats);
+    expect(found == wanted, what);
+    expect(voxels > 500 && done.repeats > 0, what + ": too little to check");
+  }
+  fmt::print("kernel voxelizeBlocks\n");
+}
+
+void runAll(const std::string& what) {
+  if (what == "voxels") return voxelizeAll();
   const Scene scene = generateScene("city", 1000, 1);
   const Bvh bvh = buildBvh(scene.positions, scene.triangles);
   // Large enough to hold a few triangles.
   ViewCell cell = generateCells("city", 1000, 1)[3];
   cell.size += glm::dvec3(10, 5, 10);
-  if (other_scenes) return bakeOtherScenes(scene, bvh, cell);
+  if (what == "scenes") return bakeOtherScenes(scene, bvh, cell);
   printKernels();
   const vec3 eye(cell.center);
   for (const uint32_t rays_per_item : {1u, 8u}) {
@@ -248,9 +290,9 @@ void runAll(bool other_scenes) {
 }  // namespace
 }  // namespace sightline
 
-int main(int argc, char**) {
+int main(int argc, char** argv) {
   try {
-    sightline::runAll(argc > 1);
+    sightline::runAll(argc > 1 ? argv[1] : "");
   } catch (const std::exception& error) {
     fmt::print("{}\n", error.what());
     return 1;

@@ -135,7 +135,7 @@ TEST(CullPvs, DrawsTheCellOfTheCamera) {
   const draw_cases::Truth truth = draw_cases::bruteForce(city.scene, city.parts, camera);
   for (const bool list : {true, false}) {
     const auto make = [&](OutsideCells outside) {
-      return list ? cullPvsList(city.parts, units, outside) : cullPvsFrustum(city.parts, units, outside);
+      return list ? cullPvsList(city.parts, units, {outside}) : cullPvsFrustum(city.parts, units, {outside});
     };
     SoftwareBackend backend(city.scene, city.parts.drawables, &units.triangles);
     std::vector<uint32_t> drawn;
@@ -159,6 +159,15 @@ TEST(CullPvs, DrawsTheCellOfTheCamera) {
     EXPECT_FALSE(draw_cases::compare(far, backend.image(), drawn).any());
     const FrameCounts nearest = make(OutsideCells::nearest)->drawFrame(away, 0, backend, drawn);
     EXPECT_TRUE(nearest.outside);
+    EXPECT_LE(drawn.size(), 2u);
+    // Of a cell that is named, wherever the camera is.
+    const std::vector<uint32_t> cells = {1, 0};
+    const CellChoice named{OutsideCells::error, cells};
+    const auto by_frame =
+        list ? cullPvsList(city.parts, units, named) : cullPvsFrustum(city.parts, units, named);
+    EXPECT_FALSE(by_frame->drawFrame(camera, 1, backend, drawn).outside);
+    EXPECT_FALSE(draw_cases::compare(truth, backend.image(), drawn).any());
+    EXPECT_FALSE(by_frame->drawFrame(camera, 0, backend, drawn).outside);
     EXPECT_LE(drawn.size(), 2u);
     try {
       make(OutsideCells::error)->drawFrame(away, 17, backend, drawn);

@@ -1,7 +1,12 @@
 // Glass, errors and times of drawing on Vulkan.
 #include <cmath>
 
+#include "core/device/registry/make_device.h"
+#include "core/draw/cull_methods.h"
+#include "core/draw/pvs_units.h"
+#include "core/scene/scene_tree.h"
 #include "core/shared/glass_colour.h"
+#include "core/walk/replay.h"
 #include "tests/draw_vulkan/mixed_scene.h"
 
 namespace sightline {
@@ -92,6 +97,84 @@ TEST(Glass, IsWhatItsLayersAddUpTo) {
     for (int frame = 0; frame < 3; ++frame) culling.drawFrame(camera);
     expectPicture("on the GPU");
   }
+}
+
+/// Glass of a city in pictures of every kind of method: each pixel is what the panes that a ray meets add up
+/// to, the farthest drawable first (by its box's middle along the view, of equally far ones the higher
+/// number).
+TEST(Glass, OfACityIsWhatRaysMeet) {
+  SL_SKIP_WITHOUT_DRAWING();
+  const City mixed(drawing_cases::withSurfaces(generateScene("city", 4000, 2), false));
+  const std::vector<Drawable>& list = mixed.parts.drawables.list;
+  const auto owner = drawableOfTriangles(mixed.parts.drawables);
+  const Bvh bvh = buildSceneTree(mixed.scene);
+  const auto tracer = makeTracer("cpu", mixed.scene, bvh);
+  VulkanDrawing drawing("vulkan", mixed.scene, mixed.parts.drawables);
+  VulkanQueryBackend backend(drawing);
+  uint64_t compared = 0, layered = 0, number = 0;
+  constexpr uint32_t kWidth = 97, kHeight = 61;
+  const auto chc = cullChcPlus(mixed.parts, {});
+  GpuCulling hiz(drawing, GpuMethod::hiz);
+  for (const Camera& camera : mixed.path(8, kWidth, kHeight)) {
+    // Nine rays a pixel: where those beside the middle meet other panes, an edge is too near to tell.
+    std::vector<Ray> rays;
+    for (uint32_t y = 0; y < kHeight; ++y) {
+      for (uint32_t x = 0; x < kWidth; ++x) {
+        for (int k = 0; k < 9; ++k)
+          rays.push_back(pixelRay(camera, x, y, (k % 3 - 1) / 64.0, (k / 3 - 1) / 64.0));
+      }
+    }
+    std::vector<Hit> hits(rays.size());
+    tracer->traceRays(rays, hits);
+    std::vector<std::vector<uint32_t>> panes(rays.size());
+    for (const SeenThrough& seen : tracer->traceGlass(rays, hits))
+      panes[seen.ray].push_back(owner[seen.triangle]);
+    const glm::dvec3 eye(xyz3(camera.eye)), forward(xyz3(camera.forward));
+    const auto distance = [&](uint32_t drawable) {
+      const AxisBox& box = list[drawable].box;
+      return glm::dot((glm::dvec3(box.low) + glm::dvec3(box.high)) * 0.5 - eye, forward);
+    };
+    for (auto& its : panes) {
+      std::ranges::sort(its, [&](uint32_t a, uint32_t b) {
+        const double da = distance(a), db = distance(b);
+        return da != db ? da > db : a > b;
+      });
+    }
+    for (const bool on_gpu : {false, true}) {
+      if (on_gpu) {
+        hiz.drawFrame(camera);
+      } else {
+        std::vector<uint32_t> drawn;
+        chc->drawFrame(camera, number++, backend, drawn);
+      }
+      const std::vector<uint32_t> picture = drawing.readGlass();
+      for (uint32_t pixel = 0; pixel < kWidth * kHeight; ++pixel) {
+        const auto& its = panes[9 * pixel + 4];
+        bool sure = true;
+        for (int k = 0; k < 9; ++k) {
+          sure = sure && panes[9 * pixel + uint32_t(k)] == its &&
+                 hits[9 * pixel + uint32_t(k)].triangle == hits[9 * pixel + 4].triangle;
+        }
+        if (!sure) continue;
+        double colour[3] = {0, 0, 0}, through = 1;
+        for (const uint32_t pane : its) {
+          const vec4 glass = glassColour(pane);
+          for (int k = 0; k < 3; ++k)
+            colour[k] = glass[k] * double(glass.w) + colour[k] * (1 - double(glass.w));
+          through *= 1 - double(glass.w);
+        }
+        ++compared;
+        layered += its.size() > 1;
+        for (int k = 0; k < 3; ++k) {
+          ASSERT_NEAR((picture[pixel] >> 8 * k) & 255, colour[k] * 255, double(its.size()) + 0.51)
+              << (on_gpu ? "hiz " : "opti-chc++ ") << pixel;
+        }
+        ASSERT_NEAR(picture[pixel] >> 24, through * 255, double(its.size()) + 0.51) << pixel;
+      }
+    }
+  }
+  EXPECT_GT(compared, 2u * 8 * kWidth * kHeight / 2) << "most pixels are not on edges";
+  EXPECT_GT(layered, 1000u);
 }
 
 VulkanAbilities everything() {

@@ -205,6 +205,76 @@ TEST(VulkanQueries, AnswersOutliveTheirCommandBuffers) {
   EXPECT_THROW(backend.visible(1'000'000), std::out_of_range);
 }
 
+/// Submits that wait for each other by semaphores give the same frames, and the same answers.
+TEST(VulkanQueries, SemaphoresChangeNothing) {
+  SL_SKIP_WITHOUT_DRAWING();
+  const City city;
+  std::vector<std::vector<float>> depths[2];
+  std::vector<FrameCounts> counts[2];
+  for (const bool semaphores : {false, true}) {
+    VulkanDrawing drawing("vulkan", city.scene, city.parts.drawables, {},
+                          {.chain = semaphores ? SubmitChain::semaphores : SubmitChain::barriers});
+    VulkanQueryBackend backend(drawing);
+    DepthCheck check(drawing);
+    const auto method = cullChcPlus(city.parts, plainChc(), {.fixed = true});
+    uint64_t number = 0;
+    for (const Camera& camera : city.path(8, 97, 61)) {
+      std::vector<uint32_t> drawn;
+      counts[semaphores].push_back(method->drawFrame(camera, number++, backend, drawn));
+      EXPECT_EQ(check.compare().false_pixels, 0u);
+      depths[semaphores].push_back(drawing.readDepth());
+    }
+  }
+  EXPECT_EQ(counts[0], counts[1]);
+  EXPECT_EQ(depths[0], depths[1]);
+  EXPECT_GT(counts[0].front().submits, 10u);
+}
+
+/// What happened when adds up to what is told of parts, without an overlap.
+TEST(VulkanQueries, SpansAddUpToTimes) {
+  SL_SKIP_WITHOUT_DRAWING();
+  const City city;
+  double now = 0;
+  VulkanDrawing drawing("vulkan", city.scene, city.parts.drawables, {},
+                        {.clock = [&] { return now += 0.001; }});
+  VulkanQueryBackend backend(drawing);
+  const auto method = cullChcPlus(city.parts, {});
+  uint64_t number = 0;
+  for (const Camera& camera : city.path(4, 97, 61)) {
+    std::vector<uint32_t> drawn;
+    const FrameCounts counts = method->drawFrame(camera, number++, backend, drawn);
+    const CpuTimes cpu = drawing.ring().cpuTimes();
+    const FrameSpans spans = drawing.ring().spans(drawing.frame());
+    const GpuTimes gpu = drawing.ring().gpuTimes(drawing.frame());
+    std::array<double, kGpuParts> parts{};
+    ASSERT_GE(spans.gpu.size(), counts.submits);
+    EXPECT_EQ(spans.gpu.front().begin, 0);
+    double end = 0;
+    for (const auto& span : spans.gpu) {
+      EXPECT_GE(span.begin, end - 1e-9 * gpu.frame);
+      EXPECT_GE(span.end, span.begin);
+      end = span.end;
+      parts[size_t(span.part)] += span.end - span.begin;
+    }
+    EXPECT_NEAR(end, gpu.frame, 1e-9 * gpu.frame);
+    for (size_t i = 0; i < kGpuParts; ++i) EXPECT_NEAR(parts[i], gpu.part[i], 1e-9 * gpu.frame);
+    std::array<double, 3> work{};
+    uint64_t submits = 0;
+    end = 0;
+    for (const auto& span : spans.cpu) {
+      EXPECT_GE(span.begin, end);
+      end = span.end;
+      work[size_t(span.part)] += span.end - span.begin;
+      submits += span.part == CpuWork::submit;
+    }
+    EXPECT_EQ(submits, counts.submits);
+    EXPECT_NEAR(work[size_t(CpuWork::record)], cpu.record, 1e-9 * end);
+    EXPECT_NEAR(work[size_t(CpuWork::submit)], cpu.submit, 1e-9 * end);
+    EXPECT_GE(work[size_t(CpuWork::wait)], cpu.look + cpu.wait - 1e-9 * end)
+        << "and that for the frame's end";
+  }
+}
+
 TEST(VulkanQueries, AFrameWithoutDrawsIsEmpty) {
   SL_SKIP_WITHOUT_DRAWING();
   const City city(1000);

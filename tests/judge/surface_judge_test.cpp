@@ -7,6 +7,8 @@
 #include "core/device/cpu/cpu_device.h"
 #include "core/judge/ruling.h"
 #include "core/scene/masked_triangle.h"
+#include "core/scene/scene_tree.h"
+#include "tests/support/instanced_scene.h"
 
 namespace sightline {
 namespace {
@@ -96,6 +98,28 @@ TEST(SurfaceJudge, FindsTheCpuRightOrRoundedAndFaultsWrong) {
   const Ray hole{vec4(2.5f, 0.5f, 4, 0), vec4(0, 0, -1, 0)}, texel{vec4(3.5f, 0.5f, 4, 0), vec4(0, 0, -1, 0)};
   EXPECT_EQ(rule(judge, hole, {3, 0}, judge.nearest(judgeRay(hole))).verdict, Verdict::kWrong);
   EXPECT_EQ(rule(judge, texel, {4, 2}, judge.nearest(judgeRay(texel))).verdict, Verdict::kMissed);
+}
+
+TEST(SurfaceJudge, RulesInstancesLikeThePlainScene) {
+  const Scene scene = testing_support::withSurfaces(testing_support::randomInstances(4, 40, 60, 8), 4),
+              flat = flatten(scene);
+  const Bvh tree = buildSceneTree(scene), flat_tree = buildBvh(flat.positions, flat.triangles);
+  const Judge judge(scene, tree), plain(flat, flat_tree);
+  testing_support::TestRandom random(6);
+  size_t hits = 0, glass = 0;
+  for (int i = 0; i < 1'500; ++i) {
+    const glm::vec3 from = random.inCube(12);
+    const auto t = flat.corners(random.below(flat.triangleCount()));
+    const glm::vec3 target = t[0] * 0.3f + t[1] * 0.3f + t[2] * 0.4f;
+    const JudgeRay ray = judgeRay({vec4(from, 0), vec4(target - from, 0)});
+    const ExactHit got = judge.nearest(ray), wanted = plain.nearest(ray);
+    ASSERT_EQ(got.triangles, wanted.triangles) << i;
+    ASSERT_EQ(judge.glassBefore(ray, got), plain.glassBefore(ray, wanted)) << i;
+    hits += wanted.missed() ? 0 : 1;
+    glass += plain.glassBefore(ray, wanted).size();
+  }
+  EXPECT_GT(hits, 200u);
+  EXPECT_GT(glass, 200u);
 }
 
 }  // namespace

@@ -67,6 +67,13 @@ TEST(ErrorRegions, CornersTouchAndEdgesDoNot) {
   EXPECT_EQ(countOf(regions, 4, edges, 1).front(), (ImageError{3, 3, 1}));
   EXPECT_EQ(countOf(regions, 4, std::vector<uint16_t>(16, 1), 1).front(), (ImageError{16, 1, 16}));
   EXPECT_EQ(countOf(regions, 4, std::vector<uint16_t>(16, 0), 1).front(), (ImageError{0, 0, 0}));
+  ErrorRegions wide(5, 2);
+  EXPECT_EQ(countOf(wide, 5,
+                    {1, 0, 0, 1, 1,  //
+                     1, 0, 1, 0, 0},
+                    1)
+                .front(),
+            (ImageError{5, 2, 3}));
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ TEST_P(GeneratedAlpha, ComesBackFromItsFile) {
   const auto [name, triangles] = GetParam();
   const Scene scene = generateScene(name, triangles, 3, true);
   checkScene(scene);
-  const SurfaceCounts counts = countSurfaces(scene.surfaces);
+  const SurfaceCounts counts = countSurfaces(scene);
   EXPECT_GT(counts.masked, 0u);
   EXPECT_GT(counts.glass, 0u);
   EXPECT_EQ(counts.masked + counts.glass, scene.alpha_triangles);

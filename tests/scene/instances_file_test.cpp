@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <bit>
+#include <cstring>
 #include <random>
 
+#include "core/formats/mask_image.h"
 #include "core/formats/save_scene.h"
 #include "core/generate/generate.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/instances.h"
+#include "core/scene/masked_triangle.h"
 #include "tests/scene/files.h"
 #include "tests/scene/gltf_files.h"
 #include "tests/support/instanced_scene.h"
@@ -149,11 +152,85 @@ TEST(InstancesInFiles, WhatCannotBePlacedIsPlain) {
   expectSameScene(scene, load(file, true));
 }
 
-TEST(InstancesInFiles, NotWhereOneSeesThrough) {
+/// The forest with holes in its trees, and a rock of glass.
+GltfFile leafyForest() {
   GltfFile file = forest(300);
-  file.document["materials"] = {{{"alphaMode", "BLEND"}}};
-  file.document["meshes"][1]["primitives"][0]["material"] = 0;
-  EXPECT_FALSE(load(file, false).hasInstances());
+  TestRandom random(5);
+  Surfaces surfaces;
+  addMask(surfaces, 8, 4, {kWrapRepeat, kWrapRepeat}, [](uint64_t i) { return i % 3 == 0; });
+  const std::vector<uint8_t> png = maskImage(surfaces, 0);
+  json& primitive = file.document["meshes"][0]["primitives"][0];
+  const size_t positions = primitive["attributes"]["POSITION"];
+  const size_t count = file.document["accessors"][positions]["count"];
+  std::vector<glm::vec2> places(count);
+  for (glm::vec2& place : places) {
+    place.x = random.between(-3, 3);
+    place.y = random.between(-3, 3);
+  }
+  primitive["attributes"]["TEXCOORD_0"] =
+      file.addAccessor(file.addView(bytesOf(places)), 5126, count, "VEC2");
+  primitive["material"] = 0;
+  file.document["meshes"][1]["primitives"][0]["material"] = 1;
+  file.document["materials"] = {
+      {{"alphaMode", "MASK"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}},
+      {{"alphaMode", "BLEND"}, {"doubleSided", true}}};
+  file.document["textures"] = {{{"source", 0}}};
+  file.document["images"] = {{{"bufferView", file.addView(bytesOf(png))}, {"mimeType", "image/png"}}};
+  return file;
+}
+
+Scene loadCulled(const GltfFile& file, bool flatten) {
+  const Folder folder;
+  return loadScene(folder.write("forest.glb", file.glb()), {.cull_back_faces = true, .flatten = flatten});
+}
+
+TEST(InstancesInFiles, HaveHolesGlassAndSides) {
+  const GltfFile file = leafyForest();
+  const Scene scene = loadCulled(file, false), flat = loadCulled(file, true);
+  ASSERT_TRUE(scene.hasInstances());
+  EXPECT_FALSE(flat.hasInstances());
+  checkScene(scene);
+  checkScene(flat);
+  EXPECT_EQ(scene.triangles.size(), kTriangles + 10);
+  EXPECT_EQ(scene.surfaces.masked.size(), kTriangles) << "once";
+  expectSameScene(scene, flat);
+  for (const Scene* its : {&scene, &flat}) {
+    EXPECT_EQ(its->alpha_triangles, 300u * kTriangles + 10);
+    EXPECT_EQ(its->single_sided_triangles, 300u * kTriangles);
+    const SurfaceCounts counts = countSurfaces(*its);
+    EXPECT_EQ(counts.masked, 300u * kTriangles);
+    EXPECT_EQ(counts.front_only, 300u * kTriangles);
+    EXPECT_EQ(counts.glass, 10u);
+  }
+  // Alone, the mesh is no instance: the loader itself places and turns its triangles.
+  size_t mirrored = 0;
+  for (uint32_t node = 0; node < 8; ++node) {
+    GltfFile single = file;
+    json& nodes = single.document["nodes"];
+    nodes.back()["children"] = json::array({nodes.back()["children"][node]});
+    const Scene plain = loadCulled(single, false);
+    ASSERT_FALSE(plain.hasInstances());
+    mirrored += scene.instances[node].mirrors ? 1 : 0;
+    for (uint32_t i = 0; i < kTriangles; ++i) {
+      const uint32_t id = node * kTriangles + i;
+      ASSERT_EQ(scene.surfaceOf(id) & ~kSurfaceIndex, plain.surfaceOf(i) & ~kSurfaceIndex);
+      const MaskedTriangle got = scene.maskPlaces(id), wanted = plain.maskPlaces(i);
+      ASSERT_EQ(std::memcmp(&got, &wanted, sizeof got), 0) << node << " " << i;
+    }
+  }
+  EXPECT_TRUE(mirrored > 0 && mirrored < 8) << mirrored;
+}
+
+/// Where no place can be an instance the scene is the one that it always was, to the last record.
+TEST(InstancesInFiles, LeaveNoSurfacesOfMeshesThatArePlain) {
+  GltfFile file = leafyForest();
+  for (json& node : file.document["nodes"]) {
+    if (node.contains("matrix")) node["matrix"] = {1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+  }
+  const Scene scene = load(file, false);
+  EXPECT_FALSE(scene.hasInstances());
+  EXPECT_EQ(scene.surfaces.masked.size(), 300u * kTriangles);
+  EXPECT_EQ(scene.surfaceOf(0), kSurfaceMasked);
 }
 
 /// Far out, where floats step by half a metre: the places lose the offset, and are those of the same forest

@@ -2,6 +2,7 @@
 #include <random>
 
 #include "core/scene/instances.h"
+#include "core/scene/masked_triangle.h"
 
 namespace sightline::testing_support {
 
@@ -98,6 +99,36 @@ inline Scene randomInstances(uint64_t seed, uint32_t instances, uint32_t mesh_tr
     scene.place(random.below(3), randomPlacement(random, reach));
   }
   return scene.finish();
+}
+
+/// The same with surfaces: each stored triangle opaque, or with holes, of glass, without a back, or of
+/// several kinds.
+inline Scene withSurfaces(Scene scene, uint64_t seed) {
+  TestRandom random(seed);
+  Surfaces& surfaces = scene.surfaces;
+  const glm::uvec2 sizes[] = {{4, 4}, {7, 3}, {64, 33}};
+  for (const glm::uvec2 size : sizes) {
+    for (uint32_t wrap = 0; wrap < 3; ++wrap) {
+      addMask(surfaces, size.x, size.y, {wrap, (wrap + size.x) % 3},
+              [&](uint64_t) { return random.below(2) == 0; });
+    }
+  }
+  for (size_t i = 0; i < scene.triangles.size(); ++i) {
+    uint32_t word = random.below(4) == 0 ? kSurfaceFrontOnly : 0u;
+    if (random.below(3) == 0) word |= kSurfaceGlass;
+    if (random.below(2) == 0) {
+      const auto mask = random.below(uint32_t(surfaces.masks.size()));
+      glm::dvec2 places[3];
+      for (glm::dvec2& place : places) {
+        place.x = random.between(-20, 20);
+        place.y = random.between(-20, 20);
+      }
+      word |= kSurfaceMasked | uint32_t(surfaces.masked.size());
+      surfaces.masked.push_back(*maskedTriangle(surfaces, mask, places));
+    }
+    surfaces.words.push_back(word);
+  }
+  return scene;
 }
 
 }  // namespace sightline::testing_support

@@ -21,10 +21,13 @@ Scene soupScene(uint32_t seed) {
   return scene;
 }
 
-VoxelFile voxelsOf(const Scene& scene, double size, bool with_triangles) {
-  const Lattice lattice = latticeOf(size);
-  VoxelFile file{headOf(scene, lattice, with_triangles), {}};
-  file.levels = pyramidOf(voxelize(scene, {.lattice = lattice, .with_triangles = with_triangles}));
+VoxelFile voxelsOf(const Scene& scene, double size, bool with_all) {
+  const VoxelizeOptions options{.lattice = latticeOf(size),
+                                .separation = with_all ? Separation::k6 : Separation::kConservative,
+                                .with_triangles = with_all,
+                                .attributes = {.normals = with_all, .objects = with_all}};
+  VoxelFile file{headOf(scene, options), {}};
+  file.levels = pyramidOf(voxelize(scene, options));
   return file;
 }
 
@@ -76,13 +79,13 @@ TEST(VoxelFile, EveryCutAndEveryChangedByteIsFound) {
 
 TEST(VoxelFile, NothingIsLeftOfOneThatIsNotFinished) {
   const TemporaryFolder folder;
-  { VoxelWriter writer(folder / "a.slv", headOf(soupScene(3), latticeOf(0.25), false)); }
+  { VoxelWriter writer(folder / "a.slv", headOf(soupScene(3), {.lattice = latticeOf(0.25)})); }
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
 TEST(VoxelFile, IsOfItsScene) {
   const Scene scene = soupScene(4), other = soupScene(5);
-  const VoxelHead head = headOf(scene, latticeOf(1), true);
+  const VoxelHead head = headOf(scene, {.lattice = latticeOf(1)});
   EXPECT_NO_THROW(requireScene(head, scene, "a.slv"));
   EXPECT_THROW(requireScene(head, other, "a.slv"), Error);
 }

@@ -80,8 +80,9 @@ constexpr Separation kAllSeparations[] = {Separation::kConservative, Separation:
 
 // Right: the device's blocks are the processor's, byte for byte.
 TEST(VoxelizeOpenCl, IsTheProcessorsByteForByte) {
+  uint64_t open_of_doubles = 0, open_of_floats = 0;
   for (int kind = 0; kind < 7; ++kind) {
-    const Scene scene = hardScene(kind, 300);
+    const Scene scene = hardScene(kind, 120);
     for (const Separation separation : kAllSeparations) {
       const VoxelizeOptions options{.lattice = latticeOf(1), .separation = separation};
       const std::vector<VoxelBlock> wanted = voxelize(scene, options).blocks;
@@ -90,19 +91,20 @@ TEST(VoxelizeOpenCl, IsTheProcessorsByteForByte) {
         const DeviceGrid found = onDevice(scene, options, {.floats = floats});
         EXPECT_TRUE(found.blocks == wanted)
             << "kind " << kind << ", separation " << int(separation) << ", floats " << floats;
-        EXPECT_GT(found.done.pairs, 300u);
-        // Little is left to the host where corners are anywhere, and much where they are on the lattice.
+        EXPECT_GT(found.done.pairs, 120u);
         const uint64_t open = found.done.open_rows + found.done.open_pairs;
-        EXPECT_TRUE(kind != 0 || floats || open == 0) << open;
-        EXPECT_TRUE(kind != 0 || open < 4 * found.done.pairs) << open;
-        EXPECT_TRUE(kind != 2 || open > 10) << open;
+        (floats ? open_of_floats : open_of_doubles) += open;
+        // Doubles decide all of what has few bits, ties too.
+        EXPECT_TRUE(kind > 2 || floats || open < 10) << "kind " << kind << ": " << open;
       }
     }
   }
+  EXPECT_GT(open_of_doubles, 100u);
+  EXPECT_GT(open_of_floats, open_of_doubles);
 }
 
 TEST(VoxelizeOpenCl, DoesNotDependOnListsGroupsAndBatches) {
-  const Scene scene = hardScene(2, 400);
+  const Scene scene = hardScene(6, 400);
   VoxelizeOptions options{.lattice = latticeOf(0.5), .attributes = {.normals = true, .objects = true}};
   const std::vector<VoxelBlock> wanted = voxelize(scene, options).blocks;
   const DeviceGrid short_lists = onDevice(scene, options, {.bricks = 1, .open_rows = 1});

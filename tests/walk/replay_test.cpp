@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "core/base/error.h"
 #include "core/device/registry/make_device.h"
@@ -12,6 +13,7 @@
 #include "core/generate/generate.h"
 #include "core/scene/scene_tree.h"
 #include "core/walk/walk_report.h"
+#include "tests/support/boxes.h"
 #include "tests/walk/walk_frames.h"
 
 namespace sightline {
@@ -52,8 +54,11 @@ class ScriptedPlayer : public WalkPlayer {
   std::vector<uint32_t> drawn() override { return {frame_}; }
   FrameCheck check() override { return script_.check(name_, frame_); }
   std::vector<size_t> falsePixels() override {
-    return std::vector<size_t>(script_.check(name_, frame_).false_pixels, 7);
+    std::vector<size_t> pixels(script_.check(name_, frame_).false_pixels);
+    std::iota(pixels.begin(), pixels.end(), 7);
+    return pixels;
   }
+  std::vector<float> referenceDepth() override { return {}; }
   std::vector<uint32_t> referenceDrawables() override { return {}; }
   void forget() override {
     replay_ = script_.replays[name_]++;
@@ -91,6 +96,7 @@ WalkReplay replayScript(Script& script, const std::vector<std::string>& methods,
   draw.drawables.list.resize(5, ten);
   WalkFrames walk;
   walk.cameras.resize(frames);
+  for (Camera& camera : walk.cameras) camera.size = {16, 16, 0, 0};
   return replayWalk(
       device, {scene, draw}, walk, methods, options, nullptr, [&] { return script.now; }, hooks);
 }
@@ -141,7 +147,7 @@ TEST(Replay, ChecksInAPassOfItsOwn) {
   const MethodReplay& m = found.methods[0];
   for (const FrameTimes& t : m.times) EXPECT_EQ(t.frame, 1) << "the check's time is not in it";
   ASSERT_EQ(m.checks.size(), 8u);
-  EXPECT_EQ(m.checks[4], (CheckedFrame{41, 0, 40, 2, 3, 30}));
+  EXPECT_EQ(m.checks[4], (CheckedFrame{41, 0, 40, 2, 3, 30, 41, 0}));
   EXPECT_EQ(m.checks[5], (CheckedFrame{0, 0, 0, 0, 3, 30}));
   EXPECT_EQ(m.pop_count, 3u);
   ASSERT_EQ(m.pops.size(), 3u);
@@ -378,6 +384,55 @@ TEST_F(SoftwareWalk, FindsWhatASetMisses) {
   ASSERT_FALSE(after.methods[0].worst.empty());
   EXPECT_EQ(after.methods[0].worst[0].pixels.size(),
             std::ranges::max(after.methods[0].checks, {}, &CheckedFrame::false_pixels).false_pixels);
+}
+
+/// A wall, in part behind a pane of glass and behind leaves with holes: where a set misses the wall, what
+/// shows through those is told apart. Expected by where rays meet the plane of pane and leaves.
+TEST(WalkOfAlpha, FalsePixelsBehindHolesAndGlassAreToldApart) {
+  testing_support::SceneOfBoxes made;
+  made.addRectangle({-4, -4, -10}, {8, 0, 0}, {0, 8, 0});
+  made.addRectangle({-1.63f, -0.77f, -5}, {1.1f, 0, 0}, {0, 1.4f, 0});
+  made.addRectangle({0.41f, -0.77f, -5}, {1.1f, 0, 0}, {0, 1.4f, 0});
+  Scene scene = made.finish();
+  scene.objects = {{"wall", 0, 2}, {"pane", 2, 2}, {"leaves", 4, 2}};
+  scene.surfaces.words = {0, 0, kSurfaceGlass, kSurfaceGlass, kSurfaceMasked, kSurfaceMasked};
+  scene.surfaces.texels = {0b0110u};  // 4 texels, two of them holes
+  scene.surfaces.masks.push_back({{2, 2, kWrapClamp + 4 * kWrapClamp, 0}});
+  scene.surfaces.masked.push_back(
+      {{kTexelOffset, kTexelOffset, kTexelOffset + 2, kTexelOffset}, {kTexelOffset, kTexelOffset + 2, 0, 0}});
+  const DrawScene draw = makeDrawScene(scene);
+  PvsUnits units = test::unitsOfAll(scene, draw.drawables);
+  units.drawables[0] = {1, 2};
+  units.triangles.lists[0] = {{4, 5, 2, 3}, 0, 2};
+  WalkFrames frames;
+  frames.cameras = {
+      makeCamera(lookAt({0, 0, 0}, {0, 0, -1}, 60, 96, 64), 96, 64, nearDistance(boundsOf(draw.drawables)))};
+  double now = 0;
+  const WalkClock clock = [&] { return now += 0.001; };
+  const WalkScene walk{scene, draw, &units};
+  const auto device = makeWalkDevice("cpu", walk, clock);
+  ReplayOptions options;
+  options.repeats = 1;
+  const WalkReplay found = replayWalk(*device, walk, frames, {"pvs", "none"}, options, nullptr, clock);
+  ASSERT_TRUE(found.complete) << found.problem;
+  EXPECT_TRUE(found.alpha);
+  uint64_t expected = 0, through_leaves = 0;
+  ASSERT_EQ(found.methods[0].worst.size(), 1u);
+  for (const size_t pixel : found.methods[0].worst[0].pixels) {
+    const Ray ray = pixelRay(frames.cameras[0], uint32_t(pixel % 96), uint32_t(pixel / 96));
+    const glm::dvec3 at = glm::dvec3(ray.direction) * (5 / -double(ray.direction.z));
+    const bool high = at.y > -0.77 && at.y < 0.63;
+    const bool leaves = high && at.x > 0.41 && at.x < 1.51;
+    expected += leaves || (high && at.x > -1.63 && at.x < -0.53) ? 1 : 0;
+    through_leaves += leaves ? 1 : 0;
+  }
+  const CheckedFrame& checked = found.methods[0].checks[0];
+  EXPECT_GT(through_leaves, 0u);
+  EXPECT_EQ(checked.behind_alpha, expected);
+  EXPECT_GT(checked.false_pixels, expected);
+  EXPECT_LE(checked.largest_region, checked.false_pixels);
+  EXPECT_GT(checked.largest_region, checked.false_pixels / 2) << "the wall around the leaves";
+  EXPECT_EQ(found.methods[1].checks[0].behind_alpha, 0u);
 }
 
 TEST(WalkReport, SummarizesLowsAndStretches) {

@@ -64,6 +64,14 @@ TEST_P(VulkanWalk, ChangesNoPixel) {
       EXPECT_GE(m.counts[i].triangles, m.checks[i].optimal_triangles) << m.name << " " << i;
     }
     EXPECT_GT(s.gpu, 0) << m.name << ": GPU times";
+    const WalkFrameSpans& spans = m.slowest.spans;
+    EXPECT_FALSE(spans.cpu.empty() || spans.gpu.empty()) << m.name;
+    double end = 0;
+    for (const auto& span : spans.cpu) {
+      EXPECT_EQ(span.begin, end) << m.name << ": no gap of the processor's";
+      end = span.end;
+    }
+    EXPECT_NEAR(end, m.slowest.milliseconds, 0.0025) << m.name << ": but for two steps of the clock";
   }
   ASSERT_EQ(found.traced.size(), 6u);
   // Where cups stand on tables, two surfaces are in one place.
@@ -74,6 +82,50 @@ TEST_P(VulkanWalk, ChangesNoPixel) {
   for (const MethodReplay& m : again.methods) {
     const auto before = std::ranges::find(found.methods, m.name, &MethodReplay::name);
     EXPECT_EQ(m.counts, before->counts) << m.name;
+  }
+}
+
+/// By the fixed schedule two devices draw, ask and wait alike as far as they answer alike: of a device of the
+/// processor's own and one of Vulkan, which round edges in their own ways, all counts of nearly all frames.
+/// Each gives the same counts on each run.
+TEST(VulkanWalkOnTwoDevices, CountsAreTheSame) {
+  if (!drawing_cases::canDraw()) GTEST_SKIP();
+  constexpr uint32_t kFrames = 60;
+  const Scene scene = generateScene("city", 5'000, 1);
+  const DrawScene draw = makeDrawScene(scene, {.split = 256});
+  const WalkFrames frames = test::generatedFrames("city", 5'000, kFrames, {97, 61}, draw);
+  double now = 0;
+  const WalkClock clock = [&] { return now += 0.001; };
+  const WalkScene walk{scene, draw};
+  const std::vector<std::string> methods = {"vfc", "stop-and-wait", "chc", "chc++", "opti-chc++"};
+  ReplayOptions options{.repeats = 1, .check = false};
+  options.method.schedule.fixed = true;
+  WalkReplay found[2][2];
+  for (const int device : {0, 1}) {
+    const auto drawn_by = makeWalkDevice(device == 0 ? "cpu" : "vulkan", walk, clock);
+    for (const int run : {0, 1}) {
+      found[device][run] = replayWalk(*drawn_by, walk, frames, methods, options, nullptr, clock);
+    }
+  }
+  for (size_t m = 0; m < methods.size(); ++m) {
+    uint32_t other = 0;
+    double triangles[2] = {0, 0}, queries[2] = {0, 0};
+    for (const int device : {0, 1}) {
+      const auto& counts = found[device][0].methods[m].counts;
+      EXPECT_EQ(counts, found[device][1].methods[m].counts) << methods[m];
+      ASSERT_EQ(counts.size(), kFrames);
+      for (const FrameCounts& c : counts)
+        triangles[device] += double(c.triangles), queries[device] += double(c.queries);
+    }
+    for (uint32_t f = 0; f < kFrames; ++f) {
+      other += found[0][0].methods[m].counts[f] != found[1][0].methods[m].counts[f] ? 1 : 0;
+    }
+    EXPECT_LE(other, kFrames / 6) << methods[m];
+    EXPECT_NEAR(triangles[0], triangles[1], 0.002 * triangles[0]) << methods[m];
+    EXPECT_NEAR(queries[0], queries[1], 0.002 * queries[0]) << methods[m];
+    if (methods[m] == "vfc") {
+      EXPECT_EQ(other, 0u) << "asks nothing";
+    }
   }
 }
 

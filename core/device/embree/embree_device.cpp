@@ -88,11 +88,11 @@ class EmbreeTracer final : public Tracer {
   explicit EmbreeTracer(const Scene& scene)
       : library_(rtcNewDevice(nullptr)),
         scene_(rtcNewScene(library_.get())),
-        surfaces_(scene.surfaces),
         has_glass_(featuresOf(scene.surfaces).glass) {
     const EmbreeGeometry mesh(rtcNewGeometry(library_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
     const Scene written = scene.hasInstances() ? flatten(scene) : Scene();
     const Scene& plain = scene.hasInstances() ? written : scene;
+    surfaces_ = plain.surfaces;
     copy(mesh.get(), RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, plain.positions);
     copy(mesh.get(), RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, plain.triangles);
     rtcSetGeometryIntersectFilterFunction(mesh.get(), filterHit);

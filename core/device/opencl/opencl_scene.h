@@ -9,7 +9,7 @@ namespace sightline {
 
 /// A scene and its tree on an OpenCL device: the 2-wide tree, and triangles as packets of eight rays or as
 /// single rays read them fastest. Kernels with SL_SCENE_ARGS take the values in order, surfaces and instances
-/// only where there are any: launchOnScene. A scene has not both.
+/// only where there are any: launchOnScene.
 struct OpenClScene {
   ClBuffer nodes;
   ClBuffer triangles;
@@ -42,14 +42,17 @@ OpenClScene uploadScene(OpenClContext& context, const Scene& scene, const Bvh& b
 template <typename... Arguments>
 void launchOnScene(OpenClContext& context, const ClKernel& kernel, uint64_t items, uint32_t local,
                    const OpenClScene& scene, const Arguments&... arguments) {
+  const auto launch = [&](const auto&... its) {
+    context.launch(kernel, items, local, scene.nodes, scene.triangles, scene.reach, its..., arguments...);
+  };
+  const bool surfaces = scene.surfaces.get() != nullptr;
   if (scene.instance_count > 0) {
-    context.launch(kernel, items, local, scene.nodes, scene.triangles, scene.reach, scene.instances,
-                   scene.instance_order, scene.instance_count, scene.root, arguments...);
-  } else if (scene.surfaces.get() == nullptr) {
-    context.launch(kernel, items, local, scene.nodes, scene.triangles, scene.reach, arguments...);
+    const auto on_instances = [&](const auto&... its) {
+      launch(its..., scene.instances, scene.instance_order, scene.instance_count, scene.root);
+    };
+    surfaces ? on_instances(scene.surfaces) : on_instances();
   } else {
-    context.launch(kernel, items, local, scene.nodes, scene.triangles, scene.reach, scene.surfaces,
-                   arguments...);
+    surfaces ? launch(scene.surfaces) : launch();
   }
 }
 

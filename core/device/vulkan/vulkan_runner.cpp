@@ -8,7 +8,7 @@ namespace sightline {
 // GLSL's scalar layout pads nothing and aligns each member by its own components: so must C++.
 static_assert(offsetof(VulkanLaunch, addresses) == sizeof(StageLaunch) && alignof(VulkanLaunch) == 8);
 static_assert(sizeof(VulkanLaunch) ==
-              sizeof(StageLaunch) + (kStageBuffers + 12) * sizeof(uint64) + 6 * sizeof(uint));
+              sizeof(StageLaunch) + (kStageBuffers + 13) * sizeof(uint64) + 6 * sizeof(uint));
 // OpenCL C rounds structs with vectors of four up to 16 bytes.
 static_assert(sizeof(StageLaunch) % 16 == 0);
 static_assert(sizeof(Face) == 96 && sizeof(Ray) == 32 && sizeof(Hit) == 8 && sizeof(PvsEntry) == 32);

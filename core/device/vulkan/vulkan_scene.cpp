@@ -32,31 +32,35 @@ VkTransformMatrixKHR transformOf(const Placement& place) {
   return transform;
 }
 
-/// What the top level holds: each part in each place, the first leaf of each, and what is added to its ids.
+/// What the top level holds: each part in each place, the first leaf of each, what is added to its ids, and
+/// which instance places it.
 struct Placed {
   std::vector<PlacedPart> parts;
-  std::vector<uint32_t> starts, ids;
+  std::vector<uint32_t> starts, ids, instances;
 };
 
 Placed placeParts(const Bvh& bvh, const std::vector<LeafPart>& parts) {
   Placed placed;
-  const auto add = [&](uint32_t part, uint32_t first_id, const PlacedPart& place) {
+  const auto add = [&](uint32_t part, uint32_t first_id, uint32_t instance, const PlacedPart& place) {
     placed.parts.push_back(place);
     placed.parts.back().part = part;
     placed.starts.push_back(parts[part].first);
     placed.ids.push_back(first_id);
+    placed.instances.push_back(instance);
   };
   if (!bvh.hasInstances()) {
-    for (uint32_t part = 0; part < parts.size(); ++part) add(part, 0, {});
+    for (uint32_t part = 0; part < parts.size(); ++part) add(part, 0, kNoTriangle, {});
     return placed;
   }
-  for (const InstanceRecord& instance : bvh.instances) {
+  for (uint32_t number = 0; number < bvh.instances.size(); ++number) {
+    const InstanceRecord& instance = bvh.instances[number];
     const bool in_place = (instance.roots.z & kInstanceInPlace) != 0;
     PlacedPart place;
     if (!in_place) place.place = transformOf(instance.place);
     const auto first = std::ranges::lower_bound(parts, instance.roots.x, {}, &LeafPart::root);
     for (auto part = first; part != parts.end() && part->root == instance.roots.x; ++part) {
-      add(static_cast<uint32_t>(part - parts.begin()), in_place ? 0 : instance.ids.x, place);
+      add(static_cast<uint32_t>(part - parts.begin()), in_place ? 0 : instance.ids.x,
+          in_place ? kNoTriangle : number, place);
     }
   }
   return placed;
@@ -69,6 +73,7 @@ void VulkanScene::describe(VulkanRunner& runner) const {
   launch.tlas = tree.top.address;
   launch.part_starts = part_starts.address();
   launch.part_ids = part_ids.address();
+  launch.part_places = instance_count > 0 ? part_places.address() : 0;
   launch.instances = instance_count > 0 ? instances.address() : 0;
   launch.instance_count = instance_count;
   launch.leaf_ids = leaf_ids.address();
@@ -114,6 +119,8 @@ VulkanScene uploadVulkanScene(const VulkanContext& context, const Scene& scene, 
     const uint64_t bytes = bvh.instances.size() * sizeof(InstanceRecord);
     result.instances = context.buffer(bytes, "instances of the scene");
     upload.write(result.instances, bvh.instances.data(), bytes);
+    result.part_places = context.buffer(placed.instances.size() * 4, "instances of parts");
+    upload.write(result.part_places, placed.instances.data(), placed.instances.size() * 4);
   }
   if (featuresOf(scene.surfaces).any()) {
     const std::vector<uint32_t> surfaces = packSurfaces(scene.surfaces, leaves.ids);

@@ -8,7 +8,7 @@ namespace sightline {
 /// A scene on a Vulkan device: corners in leaf order, the maps between leaves and ids, and the driver's trees
 /// over them.
 struct VulkanScene {
-  VulkanBuffer corners, leaf_ids, leaf_of, part_starts, part_ids;
+  VulkanBuffer corners, leaf_ids, leaf_of, part_starts, part_ids, part_places;
   VulkanBuffer instances;  ///< without memory in plain scenes
   uint32_t instance_count = 0;
   VulkanBuffer surfaces;  ///< without memory where all triangles are opaque from both sides

@@ -22,8 +22,8 @@ VulkanHandle<VkQueryPool> queryPool(const VulkanContext& context, VkQueryType ty
 
 }  // namespace
 
-CommandRing::CommandRing(const VulkanContext& context, DrawClock clock)
-    : context_(context), clock_(std::move(clock)) {
+CommandRing::CommandRing(const VulkanContext& context, DrawClock clock, SubmitChain chain)
+    : context_(context), clock_(std::move(clock)), chain_(chain) {
   for (size_t i = 0; i < kFirstEntries; ++i) entries_.push_back(make());
 }
 
@@ -59,6 +59,14 @@ std::unique_ptr<CommandRing::Entry> CommandRing::make() const {
   entry->fence = {context_, fence, [](const VulkanContext& c, VkFence handle) {
                     c.api().vkDestroyFence(c.device(), handle, nullptr);
                   }};
+  if (chain_ == SubmitChain::semaphores) {
+    const auto info = vkStruct<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO);
+    VkSemaphore done = VK_NULL_HANDLE;
+    checkVk(api.vkCreateSemaphore(context_.device(), &info, nullptr, &done), "vkCreateSemaphore");
+    entry->done = {context_, done, [](const VulkanContext& c, VkSemaphore handle) {
+                     c.api().vkDestroySemaphore(c.device(), handle, nullptr);
+                   }};
+  }
   if (context_.hasTimestamps()) entry->times = queryPool(context_, VK_QUERY_TYPE_TIMESTAMP, kTimes);
   return entry;
 }
@@ -75,10 +83,27 @@ void CommandRing::reserveQueries(Entry& entry, uint32_t queries) const {
 void CommandRing::beginFrame(uint64_t frame) {
   frame_ = frame;
   cpu_ = {};
+  FrameLog log;
+  if (frames_.size() >= kKeptFrames) {
+    log = std::move(frames_.front());  // for its memory
+    frames_.pop_front();
+    log.gpu.clear();
+    log.cpu.clear();
+  }
+  log.frame = frame;
+  frames_.push_back(std::move(log));
+}
+
+double CommandRing::spent(CpuWork work, double begin) {
+  if (!clock_) return 0;
+  const double end = clock_();
+  if (!frames_.empty()) frames_.back().cpu.push_back({work, begin, end});
+  return end - begin;
 }
 
 CommandRing::Entry& CommandRing::open(uint32_t queries, uint64_t box_bytes, uint64_t result_bytes) {
   const VulkanApi& api = context_.api();
+  const double opened = now();
   Entry* oldest = entries_.front().get();
   if (oldest->running && api.vkGetFenceStatus(context_.device(), oldest->fence.get()) != VK_SUCCESS) {
     entries_.push_front(make());
@@ -100,7 +125,7 @@ CommandRing::Entry& CommandRing::open(uint32_t queries, uint64_t box_bytes, uint
   entry.parts.clear();
   entry.frame = frame_;
   entry.serial = ++serial_;
-  entry.opened = now();
+  entry.opened = opened;
   checkVk(api.vkResetCommandPool(context_.device(), entry.pool.get(), 0), "vkResetCommandPool");
   auto info = vkStruct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
@@ -123,15 +148,25 @@ void CommandRing::mark(Entry& entry, GpuPart part) {
 void CommandRing::submit(Entry& entry) {
   const VulkanApi& api = context_.api();
   checkVk(api.vkEndCommandBuffer(entry.commands), "vkEndCommandBuffer");
+  cpu_.record += spent(CpuWork::record, entry.opened);
   const double recorded = now();
   checkVk(api.vkResetFences(context_.device(), 1, entry.fence.address()), "vkResetFences");
   auto info = vkStruct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
   info.commandBufferCount = 1;
   info.pCommandBuffers = &entry.commands;
+  // Waited for by the submit after it, which is always the ring's next: signalled once, waited for once.
+  const VkPipelineStageFlags all = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT;
+  if (chain_ == SubmitChain::semaphores) {
+    info.signalSemaphoreCount = 1;
+    info.pSignalSemaphores = entry.done.address();
+    info.waitSemaphoreCount = last_done_ != VK_NULL_HANDLE ? 1 : 0;
+    info.pWaitSemaphores = &last_done_;
+    info.pWaitDstStageMask = &all;
+  }
   checkVk(api.vkQueueSubmit(context_.queue(), 1, &info, entry.fence.get()), "vkQueueSubmit");
   entry.running = true;
-  cpu_.record += recorded - entry.opened;
-  cpu_.submit += now() - recorded;
+  last_done_ = entry.done.get();
+  cpu_.submit += spent(CpuWork::submit, recorded);
 }
 
 bool CommandRing::arrived(Entry& entry, uint64_t serial, Answers& answers, uint32_t query) {
@@ -144,7 +179,7 @@ bool CommandRing::arrived(Entry& entry, uint64_t serial, Answers& answers, uint3
     answers[query] = samples > 0;
     takeAnswers(entry, answers, query + 1);
   }
-  cpu_.look += now() - start;
+  cpu_.look += spent(CpuWork::wait, start);
   if (code == VK_NOT_READY) return false;
   checkVk(code, "vkGetQueryPoolResults");
   return true;
@@ -174,7 +209,7 @@ bool CommandRing::answer(Entry& entry, uint64_t serial, Answers& answers, uint32
                                              &samples, sizeof samples, VK_QUERY_RESULT_WAIT_BIT),
         "vkGetQueryPoolResults");
     answers[query] = samples > 0;
-    cpu_.wait += now() - start;
+    cpu_.wait += spent(CpuWork::wait, start);
     takeAnswers(entry, answers, query + 1);
   }
   return answers[query] > 0;
@@ -185,7 +220,7 @@ void CommandRing::wait(Entry& entry) {
   const double start = now();
   checkVk(context_.api().vkWaitForFences(context_.device(), 1, entry.fence.address(), VK_TRUE, UINT64_MAX),
           "vkWaitForFences");
-  cpu_.wait += now() - start;
+  cpu_.wait += spent(CpuWork::wait, start);
   harvest(entry);
 }
 
@@ -210,36 +245,50 @@ void CommandRing::harvest(Entry& entry) {
   checkVk(api.vkGetQueryPoolResults(context_.device(), entry.times.get(), 0, count, count * 8, ticks.data(),
                                     8, VK_QUERY_RESULT_64_BIT),
           "vkGetQueryPoolResults");
-  auto frame = std::find_if(frames_.begin(), frames_.end(),
-                            [&](const FrameTicks& f) { return f.frame == entry.frame; });
-  if (frame == frames_.end()) {
-    frames_.push_back({entry.frame});
-    if (frames_.size() > kKeptFrames) frames_.pop_front();
-    frame = frames_.end() - 1;
-  }
-  frame->first = frame->any ? std::min(frame->first, ticks[0]) : ticks[0];
-  frame->last = std::max(frame->last, ticks[count - 1]);
-  frame->any = true;
-  for (uint32_t i = 1; i < count; ++i) frame->part[size_t(entry.parts[i - 1])] += ticks[i] - ticks[i - 1];
+  const auto log = std::ranges::find(frames_, entry.frame, &FrameLog::frame);
+  if (log == frames_.end()) return;
+  for (uint32_t i = 1; i < count; ++i) log->gpu.push_back({entry.parts[i - 1], ticks[i - 1], ticks[i]});
 }
 
-GpuTimes CommandRing::gpuTimes(uint64_t frame) {
+CommandRing::FrameLog* CommandRing::finished(uint64_t frame) {
   for (const auto& entry : entries_) {
     if (entry->frame == frame) wait(*entry);
   }
+  const auto log = std::ranges::find(frames_, frame, &FrameLog::frame);
+  if (log == frames_.end() || log->gpu.empty()) return log == frames_.end() ? nullptr : &*log;
+  // Submits are looked at in the order in which they end, mostly.
+  std::ranges::sort(log->gpu, {}, [](const GpuSpan& span) { return std::pair(span.begin, span.end); });
+  return &*log;
+}
+
+GpuTimes CommandRing::gpuTimes(uint64_t frame) {
   GpuTimes times;
-  for (const FrameTicks& ticks : frames_) {
-    if (ticks.frame != frame) continue;
-    const double ms = context_.limits().timestamp_ns * 1e-6;
-    uint64_t rest = ticks.last - ticks.first;
-    times.frame = double(rest) * ms;
-    for (size_t i = 0; i < kGpuParts; ++i) {
-      times.part[i] = double(ticks.part[i]) * ms;
-      rest -= std::min(rest, ticks.part[i]);
-    }
-    times.rest = double(rest) * ms;
+  const FrameLog* log = finished(frame);
+  if (log == nullptr || log->gpu.empty()) return times;
+  const double ms = context_.limits().timestamp_ns * 1e-6;
+  uint64_t last = 0;
+  for (const GpuSpan& span : log->gpu) {
+    times.part[size_t(span.part)] += double(span.end - span.begin) * ms;
+    last = std::max(last, span.end);
   }
+  times.frame = double(last - log->gpu.front().begin) * ms;
+  double parts = 0;
+  for (const double part : times.part) parts += part;
+  times.rest = std::max(0.0, times.frame - parts);
   return times;
+}
+
+FrameSpans CommandRing::spans(uint64_t frame) {
+  FrameSpans spans;
+  const FrameLog* log = finished(frame);
+  if (log == nullptr) return spans;
+  spans.cpu = log->cpu;
+  const double ms = context_.limits().timestamp_ns * 1e-6;
+  for (const GpuSpan& span : log->gpu) {
+    const uint64_t first = log->gpu.front().begin;
+    spans.gpu.push_back({span.part, double(span.begin - first) * ms, double(span.end - first) * ms});
+  }
+  return spans;
 }
 
 }  // namespace sightline

@@ -28,6 +28,29 @@ struct CpuTimes {
   double wait = 0;  ///< for answers that had not
 };
 
+/// What the processor does with commands.
+enum class CpuWork { record, submit, wait };
+
+/// When, in milliseconds.
+template <typename Part>
+struct TimeSpan {
+  Part part;
+  double begin = 0, end = 0;
+};
+
+/// What happened when in a frame, in order. The processor's times are the clock's; the GPU's count from its
+/// first command.
+struct FrameSpans {
+  std::vector<TimeSpan<CpuWork>> cpu;  ///< empty without a clock
+  std::vector<TimeSpan<GpuPart>> gpu;  ///< empty where the device knows no time
+};
+
+/// What makes a submit wait for the one before it. Submits of one queue start in their order in any case.
+enum class SubmitChain {
+  barriers,    ///< of memory, in the commands
+  semaphores,  ///< one a submit besides, as the thesis has it (3.1.3)
+};
+
 /// Milliseconds from whenever; empty: no time is measured.
 using DrawClock = std::function<double()>;
 
@@ -41,6 +64,7 @@ class CommandRing {
   struct Entry {
     VulkanHandle<VkCommandPool> pool;
     VulkanHandle<VkFence> fence;
+    VulkanHandle<VkSemaphore> done;  ///< with SubmitChain::semaphores
     VulkanHandle<VkQueryPool> times, queries;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     VulkanBuffer boxes;    ///< kShared
@@ -53,7 +77,7 @@ class CommandRing {
     double opened = 0;
   };
 
-  CommandRing(const VulkanContext& context, DrawClock clock);
+  CommandRing(const VulkanContext& context, DrawClock clock, SubmitChain chain = SubmitChain::barriers);
   CommandRing(const CommandRing&) = delete;
   CommandRing& operator=(const CommandRing&) = delete;
   ~CommandRing();
@@ -76,16 +100,23 @@ class CommandRing {
 
   /// Of one of the last few frames; waits until it has run.
   GpuTimes gpuTimes(uint64_t frame);
+  /// Likewise.
+  FrameSpans spans(uint64_t frame);
   /// Since beginFrame.
   const CpuTimes& cpuTimes() const { return cpu_; }
   size_t size() const { return entries_.size(); }
   uint64_t waits() const { return waits_; }  ///< for answers, since it was made
 
  private:
-  struct FrameTicks {
-    uint64_t frame = 0, first = 0, last = 0;
-    std::array<uint64_t, kGpuParts> part{};
-    bool any = false;
+  struct GpuSpan {
+    GpuPart part;
+    uint64_t begin, end;  ///< ticks
+  };
+  /// A frame's times.
+  struct FrameLog {
+    uint64_t frame = 0;
+    std::vector<GpuSpan> gpu;
+    std::vector<TimeSpan<CpuWork>> cpu;
   };
 
   std::unique_ptr<Entry> make() const;
@@ -93,13 +124,19 @@ class CommandRing {
   /// Takes the answers from this one on that are there.
   void takeAnswers(Entry& entry, Answers& answers, uint32_t first);
   void reserveQueries(Entry& entry, uint32_t queries) const;
+  /// Waits for what the entry's frame has under way.
+  FrameLog* finished(uint64_t frame);
+  /// What the processor did since `begin`; returns how long it took.
+  double spent(CpuWork work, double begin);
   /// Keeps what the entry's queries and times say.
   void harvest(Entry& entry);
 
   const VulkanContext& context_;
   DrawClock clock_;
+  SubmitChain chain_;
+  VkSemaphore last_done_ = VK_NULL_HANDLE;      ///< of the last submit
   std::deque<std::unique_ptr<Entry>> entries_;  ///< the oldest first
-  std::deque<FrameTicks> frames_;
+  std::deque<FrameLog> frames_;                 ///< the last few
   std::vector<std::array<uint32_t, 2>> taken_;  ///< samples, and whether they are there; kept for its memory
   CpuTimes cpu_;
   uint64_t frame_ = 0, serial_ = 0, waits_ = 0;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/scene/instances.h"
 
 namespace sightline {
 namespace {
@@ -70,7 +71,8 @@ DrawMesh::DrawMesh(const VulkanContext& context, const Scene& scene, const Drawa
   const SurfaceFeatures features = featuresOf(scene.surfaces);
   has_sides_ = features.sides;
   if (features.masks || features.sides) {
-    surfaces = packSurfaces(scene.surfaces, slots);
+    const Surfaces flat = scene.hasInstances() ? flatSurfaces(scene) : Surfaces();
+    surfaces = packSurfaces(scene.hasInstances() ? flat : scene.surfaces, slots);
     surfaces_ = context.buffer(surfaces.size() * 4, {"surfaces of the scene", "a smaller scene"});
     upload.write(surfaces_, surfaces.data(), surfaces.size() * 4);
   }

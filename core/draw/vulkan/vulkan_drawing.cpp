@@ -19,7 +19,7 @@ VulkanDrawing::VulkanDrawing(const std::string& selector, const Scene& scene, co
       passes_(context_, mesh_.hasGlass()),
       programs_(context_, passes_),
       launch_buffer_(context_.buffer(sizeof(DrawLaunch), "a frame's launch")),
-      ring_(context_, options.clock) {
+      ring_(context_, options.clock, options.chain) {
   mesh_.describe(launch_);
 }
 

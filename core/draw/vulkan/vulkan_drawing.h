@@ -8,6 +8,7 @@ namespace sightline {
 struct DrawingOptions {
   uint64_t memory_budget = 0;  ///< bytes on the device; 0: what it has
   DrawClock clock = {};        ///< for times of the processor only: nothing else depends on it
+  SubmitChain chain = SubmitChain::barriers;
 };
 
 /// A device that draws a scene's drawables into images in memory: what all methods share. One thread at a

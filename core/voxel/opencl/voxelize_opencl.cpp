@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <vector>
 
@@ -13,6 +14,8 @@
 
 namespace sightline {
 namespace {
+
+using VoxelizerClock = std::chrono::steady_clock;
 
 constexpr uint32_t kAllRows = 0xffffffffu;  // of cl_kernels/voxelize.cl, as are the next
 constexpr uint32_t kMostGroup = 256;
@@ -40,6 +43,10 @@ void reserve(OpenClContext& context, ClBuffer& buffer, uint64_t bytes, const cha
   buffer = context.buffer(std::max(bytes, before + before / 2), what);
 }
 
+uint32_t withRoom(uint32_t count) {
+  return count + std::min(count / 2, ~count);
+}
+
 class OpenClVoxelizer {
  public:
   OpenClVoxelizer(const std::string& device, const Scene& scene, const VoxelizeOptions& options,
@@ -54,27 +61,34 @@ class OpenClVoxelizer {
     kernel_ = context_.kernel("voxelizeBlocks");
     counters_ = context_.buffer(sizeof(uint32_t) * 2, "counters");
     uploadTriangles();
+    context_.finish();
+    done_.setup_seconds = std::chrono::duration<double>(VoxelizerClock::now() - start_).count();
   }
 
   void make(const BlockTriangles& binned, std::span<const size_t> filled, std::span<VoxelBlock> blocks) {
+    const VoxelizerClock::time_point start = VoxelizerClock::now();
     uploadPairs(binned, filled, blocks);
     launchUntilListsSuffice(blocks.size());
-    std::vector<uint32_t> first(blocks.size()), masks(blocks.size() * kMaskWords);
+    std::vector<uint32_t> first(2 * blocks.size()), masks(blocks.size() * kMaskWords);
     std::vector<OpenRow> open(open_count_);
     bits_.resize(size_t(8) * brick_count_);
     context_.read(first_brick_, first.data(), first.size() * sizeof(uint32_t));
     context_.read(masks_, masks.data(), masks.size() * sizeof(uint32_t));
     if (!open.empty()) context_.read(open_, open.data(), open.size() * sizeof(OpenRow));
     if (!bits_.empty()) context_.readFast(bricks_, bits_.data(), bits_.size() * sizeof(uint64_t));
+    const VoxelizerClock::time_point read = VoxelizerClock::now();
     // Work items list them in any order, and families of targets twice.
     std::sort(open.begin(), open.end());
     open.erase(std::unique(open.begin(), open.end()), open.end());
     tbb::parallel_for(tbb::blocked_range<size_t>(0, blocks.size(), 16), [&](const auto& range) {
       for (size_t i = range.begin(); i < range.end(); ++i) {
-        blocks[i].bricks = bricksOf(std::span(masks).subspan(kMaskWords * i, kMaskWords), first[i]);
+        blocks[i].bricks = bricksOf(std::span(masks).subspan(kMaskWords * i, kMaskWords),
+                                    std::span(first).subspan(2 * i, 2));
         decideOpen(open, first_pair_[i], first_pair_[i + 1], blocks[i]);
       }
     });
+    done_.device_seconds += std::chrono::duration<double>(read - start).count();
+    done_.host_seconds += std::chrono::duration<double>(VoxelizerClock::now() - read).count();
     done_.pairs += first_pair_.back();
     for (const OpenRow& row : open) ++(row.row == kAllRows ? done_.open_pairs : done_.open_rows);
   }
@@ -121,7 +135,7 @@ class OpenClVoxelizer {
     context_.write(pairs_, pairs_of_host_.data(), pairs_of_host_.size_bytes());
     upload(first_, first_pair_, "blocks");
     upload(places_, places, "places of blocks");
-    reserve(context_, first_brick_, blocks.size() * sizeof(uint32_t), "bricks of blocks");
+    reserve(context_, first_brick_, 2 * blocks.size() * sizeof(uint32_t), "bricks of blocks");
     reserve(context_, masks_, blocks.size() * kMaskWords * sizeof(uint32_t), "bricks of blocks");
   }
 
@@ -131,7 +145,7 @@ class OpenClVoxelizer {
       reserve(context_, bricks_, uint64_t(64) * brick_capacity_, "bricks");
       reserve(context_, open_, sizeof(OpenRow) * uint64_t(open_capacity_), "open rows");
       context_.fill(counters_, 0, sizeof(uint32_t) * 2);
-      context_.launch(kernel_, uint64_t(blocks) * group_, group_, positions_, triangles_,
+      context_.launch(kernel_, uint64_t(2 * blocks) * group_, group_, positions_, triangles_,
                       float(std::ldexp(1.0, -options_.lattice.exponent)), places_, first_, pairs_,
                       brick_capacity_, open_capacity_, bricks_, first_brick_, masks_, open_, counters_);
       uint32_t counts[2];
@@ -139,23 +153,29 @@ class OpenClVoxelizer {
       brick_count_ = counts[0];
       open_count_ = counts[1];
       if (brick_count_ <= brick_capacity_ && open_count_ <= open_capacity_) return;
-      brick_capacity_ = std::max(brick_capacity_, brick_count_);
-      open_capacity_ = std::max(open_capacity_, open_count_);
+      // The next blocks may have more: some room is cheaper than to work again.
+      if (brick_count_ > brick_capacity_) brick_capacity_ = withRoom(brick_count_);
+      if (open_count_ > open_capacity_) open_capacity_ = withRoom(open_count_);
       ++done_.repeats;
     }
   }
 
-  std::vector<VoxelBrick> bricksOf(std::span<const uint32_t> masks, uint32_t first) const {
+  // first: of the lower and of the upper half of a block.
+  std::vector<VoxelBrick> bricksOf(std::span<const uint32_t> masks, std::span<const uint32_t> first) const {
     std::vector<VoxelBrick> bricks;
     size_t count = 0;
     for (const uint32_t mask : masks) count += size_t(std::popcount(mask));
     bricks.reserve(count);
-    for (uint32_t word = 0; word < kMaskWords; ++word) {
-      for (uint32_t mask = masks[word]; mask != 0; mask &= mask - 1) {
-        VoxelBrick brick;
-        brick.place = uint16_t(32 * word + uint32_t(std::countr_zero(mask)));
-        std::copy_n(bits_.begin() + int64_t(8) * (first + int64_t(bricks.size())), 8, brick.bits.begin());
-        bricks.push_back(brick);
+    for (uint32_t half = 0; half < 2; ++half) {
+      auto bits = bits_.begin() + int64_t(8) * first[half];
+      for (uint32_t word = half * kMaskWords / 2; word < (half + 1) * kMaskWords / 2; ++word) {
+        for (uint32_t mask = masks[word]; mask != 0; mask &= mask - 1) {
+          VoxelBrick brick;
+          brick.place = uint16_t(32 * word + uint32_t(std::countr_zero(mask)));
+          std::copy_n(bits, 8, brick.bits.begin());
+          bits += 8;
+          bricks.push_back(brick);
+        }
       }
     }
     return bricks;
@@ -201,6 +221,7 @@ class OpenClVoxelizer {
     }
   }
 
+  VoxelizerClock::time_point start_ = VoxelizerClock::now();
   const Scene& scene_;
   const VoxelizeOptions& options_;
   uint32_t group_, brick_capacity_, open_capacity_;

@@ -18,10 +18,13 @@ struct OpenClVoxelizing {
 
 /// What a device did.
 struct OpenClVoxelized {
-  uint64_t pairs = 0;       ///< of a triangle and a block
-  uint64_t open_rows = 0;   ///< of them, decided on the host
-  uint64_t open_pairs = 0;  ///< likewise, all their rows
-  uint64_t repeats = 0;     ///< launches that were done again with longer lists
+  uint64_t pairs = 0;         ///< of a triangle and a block
+  uint64_t open_rows = 0;     ///< of them, decided on the host
+  uint64_t open_pairs = 0;    ///< likewise, all their rows
+  uint64_t repeats = 0;       ///< launches that were done again with longer lists
+  double setup_seconds = 0;   ///< to find and compile for the device, and to upload the scene
+  double device_seconds = 0;  ///< of its work, and to and from it
+  double host_seconds = 0;    ///< to collect bricks, and to decide what was open
 };
 
 /// voxelize on an OpenCL device (selector as OpenClContext's), with the same bytes as on the processor: the
