@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cl_kernels/program_source.h"
+#include "core/base/error.h"
 #include "core/opencl/opencl_context.h"
 
 namespace sightline {
@@ -21,6 +22,7 @@ using VoxelizerClock = std::chrono::steady_clock;
 constexpr uint32_t kAllRows = 0xffffffffu;  // of cl_kernels/voxelize.cl, as are the next
 constexpr uint32_t kMostGroup = 256;
 constexpr uint32_t kBinGroup = 64;
+constexpr uint64_t kMostPairs = 0xffffffffu;  // at once: their places have 32 bits
 constexpr uint32_t kMaskWords =
     kBlockSide * kBlockSide * kBlockSide / (kBrickSide * kBrickSide * kBrickSide) / 32;
 
@@ -85,6 +87,11 @@ class OpenClVoxelizer {
     for (const auto& [block, id] : more) ++result.first[block];
     uint64_t total = 0;
     for (uint64_t& first : result.first) total += std::exchange(first, total);
+    if (total > kMostPairs) {
+      throw Error(
+          "a layer of blocks holds more triangles than this device's lists: take larger voxels, or "
+          "the processor");
+    }
     result.ids.resize(total);
     if (total > 0) {
       fillBlocks(blocks, result);
@@ -107,11 +114,12 @@ class OpenClVoxelizer {
     launchUntilListsSuffice(blocks.size());
     std::vector<uint32_t> first(2 * blocks.size()), masks(blocks.size() * kMaskWords);
     std::vector<OpenRow> open(open_count_);
-    bits_.resize(size_t(8) * brick_count_);
+    const size_t words = size_t(8) * brick_count_;
+    if (bits_.size() < words) bits_.resize(words);
     context_.read(first_brick_, first.data(), first.size() * sizeof(uint32_t));
     context_.read(masks_, masks.data(), masks.size() * sizeof(uint32_t));
     if (!open.empty()) context_.read(open_, open.data(), open.size() * sizeof(OpenRow));
-    if (!bits_.empty()) context_.readFast(bricks_, bits_.data(), bits_.size() * sizeof(uint64_t));
+    if (words > 0) context_.readFast(bricks_, bits_.data(), words * sizeof(uint64_t));
     const VoxelizerClock::time_point read = VoxelizerClock::now();
     // Work items list them in any order, and families of targets twice.
     std::sort(open.begin(), open.end());
@@ -130,6 +138,9 @@ class OpenClVoxelizer {
   }
 
   const OpenClVoxelized& done() const { return done_; }
+  uint64_t mostListBytes() const {
+    return std::min(context_.maxAllocationBytes(), kMostPairs * sizeof(uint32_t));
+  }
 
  private:
   void uploadTriangles() {
@@ -332,13 +343,16 @@ class OpenClVoxelizer {
 OpenClVoxelized voxelizeOpenCl(const Scene& scene, const VoxelizeOptions& options, const std::string& device,
                                const std::function<void(VoxelBlock&&)>& take,
                                const OpenClVoxelizing& tuning) {
+  requireFits(options.lattice, sceneBounds(scene));  // before a device is asked for anything
   OpenClVoxelizer voxelizer(device, scene, options, tuning);
+  VoxelizeOptions on_device = options;
+  on_device.memory = std::min(options.memory, voxelizer.mostListBytes());
   VoxelizeSteps steps;
   steps.bin = [&](const VoxelBox& blocks) { return voxelizer.bin(blocks); };
   steps.make = [&](const BlockTriangles& binned, std::span<const size_t> filled,
                    std::span<VoxelBlock> blocks) { voxelizer.make(binned, filled, blocks); };
   steps.blocks_a_time = std::max(tuning.blocks_a_time, size_t{1});
-  voxelizeBy(steps, scene, options, take);
+  voxelizeBy(steps, scene, on_device, take);
   return voxelizer.done();
 }
 
