@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 
@@ -33,7 +34,7 @@ namespace {
 constexpr size_t kMissingShown = 10;  ///< ids of missing triangles on one line
 
 struct PictureCommand {
-  std::filesystem::path scene, pvs, output;
+  std::filesystem::path scene, pvs, output, upper;
   std::string cell, view = "outside", device = "opencl", cut = "auto";
   PictureOptions options;
   SceneLoadOptions load;
@@ -64,6 +65,22 @@ void drawVoxelFile(const PictureCommand& command) {
               readPoints(command.reach, "--reach")});
 }
 
+/// The same cell's set of a file of upper bounds.
+CellPvs upperOf(const CellPvs& cell, const Scene& scene, const std::filesystem::path& file) {
+  const PvsFile bounds = loadFinishedCells(file);
+  requireScene(bounds, scene, file);
+  const CellPvs& upper = chooseCell(bounds, cell.cell.name, file);
+  if (upper.cell == cell.cell) return upper;
+  throw Error(fmt::format("{}: its cell {} is not where that of the set is", file.string(), cell.cell.name));
+}
+
+/// Triangles of the bound that are not in the set.
+size_t countOpen(const CellPvs& cell, const CellPvs& upper) {
+  std::vector<uint32_t> open;
+  std::ranges::set_difference(upper.triangles, cell.triangles, std::back_inserter(open));
+  return open.size();
+}
+
 void draw(const PictureCommand& command) {
   if (lowerExtension(command.output) != ".png") {
     throw Error(fmt::format("{}: must end with .png", command.output.string()), kExitUsage);
@@ -72,12 +89,17 @@ void draw(const PictureCommand& command) {
   if (!command.reach.empty()) throw Error("--reach: is of voxels (.slv) only", kExitUsage);
   if (command.pvs.empty()) throw CLI::RequiredError("pvs");
   if (command.cell.empty()) throw CLI::RequiredError("--cell");
-  requireSeparate(std::array{command.output}, std::array{command.scene, command.pvs});
+  if (!command.upper.empty() && command.view != "outside") {
+    throw Error("--bound: the view from inside has no colours for it", kExitUsage);
+  }
+  requireSeparate(std::array{command.output}, std::array{command.scene, command.pvs, command.upper});
   const PvsFile baked = loadFinishedCells(command.pvs);
   const PvsFile pvs = inState(baked, command.doors, command.pvs);
   const CellPvs& cell = chooseCell(pvs, command.cell, command.pvs);
   Scene loaded = loadScene(command.scene, command.load);
   requireScene(pvs, loaded, command.pvs);
+  std::optional<CellPvs> upper;
+  if (!command.upper.empty()) upper = upperOf(cell, loaded, command.upper);
   Session session(inState(std::move(loaded), baked, command.doors), {.device = command.device});
   const Scene& scene = session.scene();
   session.open();
@@ -91,11 +113,16 @@ void draw(const PictureCommand& command) {
   const bool inside = command.view == "inside";
   PictureOptions options = command.options;
   options.cut_height -= float(scene.offset.y);
-  const Picture picture = inside ? renderInside(trace, scene, cell, options, glass)
-                                 : renderOutside(trace, scene, cell, options, glass);
+  const Picture picture = inside
+                              ? renderInside(trace, scene, cell, options, glass)
+                              : renderOutside(trace, scene, cell, options, glass, upper ? &*upper : nullptr);
   savePng(picture.image, command.output);
   fmt::print("{}: {} from {}, {} of {} triangles\n", command.output.string(), cell.cell.name, command.view,
              cell.triangles.size(), scene.triangleCount());
+  if (upper) {
+    fmt::print("{} open (ochre), {} proved hidden (dark)\n", countOpen(cell, *upper),
+               scene.triangleCount() - upper->triangles.size());
+  }
   if (!inside) return;
   fmt::print("{} of {} pixels show a triangle outside the set (red)\n", picture.missing_pixels,
              picture.scene_pixels);
@@ -135,6 +162,12 @@ void addPictureCommand(CLI::App& app) {
       ->check(oneOf({"outside", "inside"}))
       ->type_name("VIEW")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--bound", options->upper,
+          "outside: the upper bound of the set's cells; what it leaves open is ochre, what it proves "
+          "hidden dark")
+      ->type_name("UPPER.pvs");
   const CLI::Validator sides = wholeNumber(kMinPictureSide, kMaxPictureSide);
   command->add_option("--width", options->options.width, "pixels")
       ->transform(sides)
