@@ -1,4 +1,4 @@
-// Which voxels of blocks of 64 x 64 x 64 meet triangles: a work group a half of a block, the lower or the upper one,
+// Which triangles meet which blocks of 64 x 64 x 64 voxels, and which of their voxels: there a work group a half of a block, the lower or the upper one,
 // whose bits are in local memory. Rows that rounding leaves open are listed for the host. One program of its own:
 // bakes need not compile it.
 #include "core/shared/voxel_planes.h"
@@ -44,16 +44,20 @@ static inline void setRow(const Target* target, int y, int z, int low, int high)
   if ((uint)(bits >> 32) != 0) atomic_or(&target->bits[word + 1], (uint)(bits >> 32));
 }
 
-static inline RealPoint cornerAt(const Target* target, ulong corner) {
-  const SL_REAL scale = slReal(target->voxels_a_unit);
-  __global const float* p = target->positions + 3 * (ulong)target->triangles[corner];
+static inline RealPoint cornerAt(__global const float* positions, __global const uint* triangles, ulong corner,
+                                 float a_unit) {
+  const SL_REAL scale = slReal(a_unit);
+  __global const float* p = positions + 3 * (ulong)triangles[corner];
   return realPoint(slReal(p[0]) * scale, slReal(p[1]) * scale, slReal(p[2]) * scale);
 }
 
 static inline VoxelTriangle triangleAt(const Target* target, uint pair) {
   const ulong corner = 3 * (ulong)target->pairs[pair];
-  return voxelTriangle(cornerAt(target, corner), cornerAt(target, corner + 1), cornerAt(target, corner + 2),
-                       target->base, LAYERS);
+  const VoxelPlace size = {64, 64, LAYERS};
+  return voxelTriangle(cornerAt(target->positions, target->triangles, corner, target->voxels_a_unit),
+                       cornerAt(target->positions, target->triangles, corner + 1, target->voxels_a_unit),
+                       cornerAt(target->positions, target->triangles, corner + 2, target->voxels_a_unit), target->base,
+                       size);
 }
 
 // A triangle's half spaces in a block, or those of one direction of its targets, and where its rows are.
@@ -64,9 +68,9 @@ typedef struct Planes {
   uint family;
 } Planes;
 
-static inline uint rowsOf(VoxelPlace low, VoxelPlace high) {
-  if (low.x > high.x || low.y > high.y || low.z > high.z) return 0;
-  return (uint)((high.y - low.y + 1) * (high.z - low.z + 1));
+static inline uint rowsOf(PlaceBox box) {
+  if (box.low.x > box.high.x || box.low.y > box.high.y || box.low.z > box.high.z) return 0;
+  return (uint)((box.high.y - box.low.y + 1) * (box.high.z - box.low.z + 1));
 }
 
 #if SL_SEPARATION == 0
@@ -93,8 +97,7 @@ static inline Planes planesOf(const VoxelTriangle* t, uint pair, uint family) {
   p.planes.count = 0;
   p.planes.empty = false;
   p.planes.open = false;
-  p.planes.low = t->low;
-  p.planes.high = t->high;
+  p.planes.box = t->box;
   if (!t->straight) p.planes = meetingPlanes(*t);
 #else
   p.planes = targetPlanes(*t, alongOf(family));
@@ -111,7 +114,7 @@ static inline Planes planesOf(const VoxelTriangle* t, uint pair, uint family) {
 static inline VoxelRun openRow(const Target* target, uint pair, uint family, int y, int z) {
   const VoxelTriangle t = triangleAt(target, pair);
   const Planes p = planesOf(&t, pair, family);
-  VoxelRun run = {p.planes.low.x, p.planes.high.x, false};
+  VoxelRun run = {p.planes.box.low.x, p.planes.box.high.x, false};
   bool open = false;
   for (int i = 0; i < p.planes.count && run.low <= run.high; ++i) {
     run.open = false;
@@ -134,12 +137,12 @@ static inline VoxelRun openRow(const Target* target, uint pair, uint family, int
       if (lane == 0) listOpen(target, p->pair, ALL_ROWS);                                             \
       return;                                                                                         \
     }                                                                                                 \
-    const uint rows = rowsOf(p->planes.low, p->planes.high);                                                        \
-    const uint width = (uint)(p->planes.high.y - p->planes.low.y + 1);                                              \
+    const uint rows = rowsOf(p->planes.box);                                                        \
+    const uint width = (uint)(p->planes.box.high.y - p->planes.box.low.y + 1);                                              \
     for (uint row = lane; row < rows; row += lanes) {                                                 \
-      const int y = p->planes.low.y + (int)(row % width);                                                    \
-      const int z = p->planes.low.z + (int)(row / width);                                                    \
-      VoxelRun run = {p->planes.low.x, p->planes.high.x, false};                                                    \
+      const int y = p->planes.box.low.y + (int)(row % width);                                                    \
+      const int z = p->planes.box.low.z + (int)(row / width);                                                    \
+      VoxelRun run = {p->planes.box.low.x, p->planes.box.high.x, false};                                                    \
       for (int i = 0; i < p->planes.count && run.low <= run.high; ++i)                                \
         run = narrowRow(run, p->planes.at[i], p->inverse[i], y, z);                                   \
       if (run.open && run.low <= run.high) run = openRow(target, p->pair, p->family, y, z);           \
@@ -193,7 +196,7 @@ __kernel void voxelizeBlocks(__global const float* positions, __global const uin
     const uint pair = begin + lane;
     if (pair < end) {
       const VoxelTriangle t = triangleAt(&target, pair);
-      const uint rows = rowsOf(t.low, t.high);
+      const uint rows = rowsOf(t.box);
       // An open normal matters only where the triangle's box alone does not tell.
       if (t.open && (SL_SEPARATION != 0 || !t.straight)) {
         listOpen(&target, pair, ALL_ROWS);
@@ -243,5 +246,73 @@ __kernel void voxelizeBlocks(__global const float* positions, __global const uin
     for (uint i = 0; i < word; ++i) place += popcount(mask[i]);
     if (place >= brick_capacity) continue;
     for (uint z = 0; z < 8; ++z) bricks[8 * (ulong)place + z] = brickWord(&target, brick, z);
+  }
+}
+
+// A row of blocks that the triangle meets.
+static inline VoxelRun rowOfBlocks(const VoxelTriangle* t, const VoxelPlanes* planes, int y, int z) {
+  VoxelRun run = {t->box.low.x, t->box.high.x, false};
+  bool open = false;
+  for (int i = 0; i < planes->count && run.low <= run.high; ++i) {
+    const VoxelHalf h = planes->at[i];
+    const SL_REAL inverse = inverseOf(h.factor.x, h.rises.x);
+    run.open = false;
+    run = narrowRow(run, h, inverse, y, z);
+    if (run.open) run = decideRow(run, *t, h, planes->source[i], true, axisAlong(0), inverse, y, z);
+    open = open || run.open;
+  }
+  run.open = open && run.low <= run.high;
+  return run;
+}
+
+// Whether rounding leaves open which blocks it meets.
+static inline bool blocksAreOpen(const VoxelTriangle* t, const VoxelPlanes* planes) {
+  if (planes->open) return true;
+  for (int z = t->box.low.z; z <= t->box.high.z; ++z) {
+    for (int y = t->box.low.y; y <= t->box.high.y; ++y) {
+      if (rowOfBlocks(t, planes, y, z).open) return true;
+    }
+  }
+  return false;
+}
+
+// Counts, and then lists, the triangles that meet each block of a box of blocks; a work item a triangle. Those that
+// are left open go to a list of their own and nowhere else. Work items list a block's triangles in any order.
+__kernel void binIntoBlocks(__global const float* positions, __global const uint* triangles, uint triangle_count,
+                            float blocks_a_unit, int4 low, int4 size, uint fills, uint open_capacity,
+                            volatile __global uint* counts, __global const uint* first, __global uint* ids,
+                            __global uint* open, volatile __global uint* counters) {
+  const uint id = (uint)get_global_id(0);
+  if (id >= triangle_count) return;
+  const VoxelPlace base = {low.x, low.y, low.z};
+  const VoxelPlace limit = {size.x, size.y, size.z};
+  const ulong corner = 3 * (ulong)id;
+  const VoxelTriangle t = voxelTriangle(cornerAt(positions, triangles, corner, blocks_a_unit),
+                                        cornerAt(positions, triangles, corner + 1, blocks_a_unit),
+                                        cornerAt(positions, triangles, corner + 2, blocks_a_unit), base, limit);
+  VoxelPlanes planes;
+  planes.count = 0;
+  planes.open = false;
+  if (!t.straight) {
+    // Of one that reaches none of the blocks an open normal does not matter, unless its box is not told either.
+    if (!t.open && rowsOf(t.box) == 0) return;
+    planes = meetingPlanes(t);
+    if (blocksAreOpen(&t, &planes)) {
+      if (fills == 0) {
+        const uint place = atomic_inc(&counters[COUNT_OPEN]);
+        if (place < open_capacity) open[place] = id;
+      }
+      return;
+    }
+  }
+  for (int z = t.box.low.z; z <= t.box.high.z; ++z) {
+    for (int y = t.box.low.y; y <= t.box.high.y; ++y) {
+      const VoxelRun run = rowOfBlocks(&t, &planes, y, z);
+      for (int x = run.low; x <= run.high; ++x) {
+        const uint block = (uint)(x + size.x * (y + size.y * z));
+        const uint place = atomic_inc(&counts[block]);
+        if (fills != 0) ids[first[block] + place] = id;
+      }
+    }
   }
 }

@@ -16,14 +16,19 @@ SL_STRUCT(VoxelPlace) {
   int z;
 };
 
+/// From the lowest to the highest along each axis, both with their ends.
+SL_STRUCT(PlaceBox) {
+  VoxelPlace low;
+  VoxelPlace high;
+};
+
 /// A triangle in voxels, as seen from a block.
 SL_STRUCT(VoxelTriangle) {
   RealPoint a;  ///< without rounding
   RealPoint b;
   RealPoint c;
   VoxelPlace base;  ///< the lowest voxel of the part of a block that is looked at
-  VoxelPlace low;   ///< what of the triangle's box of voxels is in that part, from its base on
-  VoxelPlace high;
+  PlaceBox box;     ///< what of the triangle's box of voxels is in that part, from its base on
   RoundedVector normal;
   AxisSigns signs;  ///< of the normal
   SL_REAL size;     ///< what a voxel of the block and a corner are apart at most, along an axis
@@ -36,10 +41,9 @@ SL_STRUCT(VoxelPlanes) {
   VoxelHalf at[SL_MOST_VOXEL_PLANES];
   int source[SL_MOST_VOXEL_PLANES];  ///< what each comes from: sourceOf
   int count;
-  VoxelPlace low;  ///< the voxels are in this box, from the block's lowest on
-  VoxelPlace high;
-  bool empty;  ///< there is no such voxel, whatever the half spaces are
-  bool open;   ///< rounding leaves open which half spaces there are
+  PlaceBox box;  ///< in which the voxels are, from the block's lowest on
+  bool empty;    ///< there is no such voxel, whatever the half spaces are
+  bool open;     ///< rounding leaves open which half spaces there are
 };
 
 SL_FUNC bool differenceIsExact(SL_REAL a, SL_REAL b) {
@@ -129,8 +133,8 @@ SL_FUNC int highestVoxel(SL_REAL high) {
   return -ceilingOf(-high);
 }
 
-/// In 64 x 64 x layers voxels from the base on, layers <= 64.
-SL_FUNC VoxelTriangle voxelTriangle(RealPoint a, RealPoint b, RealPoint c, VoxelPlace base, int layers) {
+/// In so many voxels from the base on.
+SL_FUNC VoxelTriangle voxelTriangle(RealPoint a, RealPoint b, RealPoint c, VoxelPlace base, VoxelPlace size) {
   VoxelTriangle t;
   t.a = a;
   t.b = b;
@@ -146,14 +150,15 @@ SL_FUNC VoxelTriangle voxelTriangle(RealPoint a, RealPoint b, RealPoint c, Voxel
   high.z = highestVoxel(largerOf(largerOf(a.z, b.z), c.z)) - base.z;
   t.straight = (high.x == low.x ? 1 : 0) + (high.y == low.y ? 1 : 0) + (high.z == low.z ? 1 : 0) >= 2;
   // The corners are in the box, and so is every voxel that is asked, or in the block.
-  int farthest = max(max(max(-low.x, -low.y), max(-low.z, high.x)), max(max(high.y, high.z), 64));
-  t.size = slReal(farthest) + slReal(67);
-  t.low.x = max(low.x, 0);
-  t.low.y = max(low.y, 0);
-  t.low.z = max(low.z, 0);
-  t.high.x = min(high.x, 63);
-  t.high.y = min(high.y, 63);
-  t.high.z = min(high.z, layers - 1);
+  int farthest = max(max(max(-low.x, -low.y), max(-low.z, high.x)), max(high.y, high.z));
+  farthest = max(farthest, max(max(size.x, size.y), size.z));
+  t.size = slReal(farthest) + slReal(3);
+  t.box.low.x = max(low.x, 0);
+  t.box.low.y = max(low.y, 0);
+  t.box.low.z = max(low.z, 0);
+  t.box.high.x = min(high.x, size.x - 1);
+  t.box.high.y = min(high.y, size.y - 1);
+  t.box.high.z = min(high.z, size.z - 1);
   t.normal = triangleNormal(a, b, c);
   t.signs = normalSigns(t.normal, a, b, c);
   t.open = t.signs.x == kOpenSign || t.signs.y == kOpenSign || t.signs.z == kOpenSign;
@@ -223,8 +228,7 @@ SL_FUNC int sourceOf(int edge, int axis, AxisSigns halves) {
 SL_FUNC VoxelPlanes meetingPlanes(VoxelTriangle t) {
   VoxelPlanes planes;
   planes.count = 0;
-  planes.low = t.low;
-  planes.high = t.high;
+  planes.box = t.box;
   planes.empty = false;
   planes.open = t.open;
   for (int axis = 0; axis < 3; ++axis) {
@@ -306,24 +310,23 @@ SL_FUNC int lowestFrom(SL_REAL p, int halves) {
 
 /// What a half space says that only one coordinate decides: v + halves / 2 - p is not below zero, ties
 /// included, if it rises; else it is below zero, without ties. That is what shifted targets make of ties.
-SL_FUNC VoxelPlanes cutBox(VoxelPlanes planes, AxisSigns rises, RealPoint p, AxisSigns halves,
-                           VoxelPlace base) {
+SL_FUNC PlaceBox cutBox(PlaceBox box, AxisSigns rises, RealPoint p, AxisSigns halves, VoxelPlace base) {
   if (rises.x != 0) {
     int from = lowestFrom(p.x, halves.x) - base.x;
-    if (rises.x > 0) planes.low.x = max(planes.low.x, from);
-    if (rises.x < 0) planes.high.x = min(planes.high.x, from - 1);
+    if (rises.x > 0) box.low.x = max(box.low.x, from);
+    if (rises.x < 0) box.high.x = min(box.high.x, from - 1);
   }
   if (rises.y != 0) {
     int from = lowestFrom(p.y, halves.y) - base.y;
-    if (rises.y > 0) planes.low.y = max(planes.low.y, from);
-    if (rises.y < 0) planes.high.y = min(planes.high.y, from - 1);
+    if (rises.y > 0) box.low.y = max(box.low.y, from);
+    if (rises.y < 0) box.high.y = min(box.high.y, from - 1);
   }
   if (rises.z != 0) {
     int from = lowestFrom(p.z, halves.z) - base.z;
-    if (rises.z > 0) planes.low.z = max(planes.low.z, from);
-    if (rises.z < 0) planes.high.z = min(planes.high.z, from - 1);
+    if (rises.z > 0) box.low.z = max(box.low.z, from);
+    if (rises.z < 0) box.high.z = min(box.high.z, from - 1);
   }
-  return planes;
+  return box;
 }
 
 /// The planes and a half space more: side * (gradient . (v + halves / 2 - p)) > 0.
@@ -335,7 +338,8 @@ SL_FUNC VoxelPlanes withHalf(VoxelPlanes planes, VoxelTriangle t, int edge, Roun
     rises.x = side * signs.x;
     rises.y = side * signs.y;
     rises.z = side * signs.z;
-    return cutBox(planes, rises, p, halves, t.base);
+    planes.box = cutBox(planes.box, rises, p, halves, t.base);
+    return planes;
   }
   planes.source[planes.count] = sourceOf(edge, 0, halves);
   planes.at[planes.count] = voxelHalf(gradient, signs, side, fromCorner(halves, p, t.base), t.size);
@@ -347,8 +351,7 @@ SL_FUNC VoxelPlanes withHalf(VoxelPlanes planes, VoxelTriangle t, int edge, Roun
 SL_FUNC VoxelPlanes targetPlanes(VoxelTriangle t, AxisSigns along) {
   VoxelPlanes planes;
   planes.count = 0;
-  planes.low = t.low;
-  planes.high = t.high;
+  planes.box = t.box;
   planes.open = t.open;
   int side = t.open ? kOpenSign : signAlong(t, along);
   planes.empty = side == 0;

@@ -2,7 +2,7 @@
 #include <array>
 #include <glm/glm.hpp>
 
-#include "core/shared/voxel_half.h"
+#include "core/shared/voxel_planes.h"
 #include "core/voxel/triangle_rows.h"
 
 namespace sightline {
@@ -54,56 +54,57 @@ class SeparatingRows {
   /// Beyond the numbers of VoxelHalf: what exact arithmetic is asked.
   struct Plane {
     VoxelHalf half;
-    std::array<double, 3> inverse{};  ///< of half.factor
+    std::array<double, 2> inverse{};  ///< of half.factor's x and y
+    int source = 0;                   ///< of core/shared/voxel_planes.h
     int side = 1;                     ///< sign of the orientation that is on the inner side
-    int edge = -1;                    ///< from this corner of the triangle to the next; -1: its plane
-    glm::dvec3 target{0.0};           ///< the point of the target, from the voxel's lowest corner
   };
-  /// Of the targets along one direction.
+  /// Of the targets along one direction. Half spaces that a single coordinate decides are in its box.
   struct Family {
-    AxisSigns along;
-    std::array<Plane, 5> planes;  ///< first those that only z decides, then those without x, then the others
-    int first_y = 0, first_x = 0;
+    AxisSigns along{};
+    PlaceBox box{};  ///< from the triangle's box on
+    std::array<Plane, 5> planes;
+    int first_x = 0, count = 0;  ///< from first_x on x has a part in them
   };
 
   void prepare();
-  bool makeFamily(const AxisSigns& along, const RoundedVector& normal, const AxisSigns& signs,
-                  Family& family) const;
-  Plane edgePlane(const AxisSigns& along, int edge, int side) const;
-  bool holds(const Plane& plane, const AxisSigns& along, const glm::ivec3& voxel) const;
-  void search(const Family& family, const Plane& plane, glm::ivec3 at, int axis, int& low, int& high) const;
+  bool makeFamily(const AxisSigns& along, Family& family) const;
+  bool addPlane(int edge, const RoundedVector& gradient, const AxisSigns& signs, int side,
+                const AxisSigns& halves, Family& family) const;
+  AxisSigns signsOfEdge(const RoundedVector& gradient, int edge, const AxisSigns& along) const;
+  bool holds(const Family& family, const Plane& plane, const glm::ivec3& place) const;
+  void search(const Family& family, const Plane& plane, glm::ivec3 at, int axis, double end, double reach,
+              int& low, int& high) const;
 
+  // Places are counted from the triangle's box on.
   void narrow(const Family& family, const Plane& plane, const glm::ivec3& at, int axis, int& low,
               int& high) const {
     if (low > high) return;
     const VoxelHalf& half = plane.half;
-    double rest = half.rest;
-    if (axis < 2) rest += half.factor.z * double(at.z - box_.low.z);
-    if (axis < 1) rest += half.factor.y * double(at.y - box_.low.y);
-    const int base = box_.low[axis], rises = axis == 0   ? half.rises.x
-                                             : axis == 1 ? half.rises.y
-                                                         : half.rises.z;
+    double rest = half.rest + half.factor.z * at.z;
+    if (axis == 0) rest += half.factor.y * at.y;
+    const double inverse = plane.inverse[size_t(axis)];
     const VoxelRun run =
-        narrowRun({low - base, high - base, false}, rest, plane.inverse[size_t(axis)], half.tolerance, rises);
-    if (run.open) return search(family, plane, at, axis, low, high);
-    low = base + run.low;
-    high = base + run.high;
+        narrowRun({low, high, false}, rest, inverse, half.tolerance, axis == 0 ? half.rises.x : half.rises.y);
+    if (run.open)
+      return search(family, plane, at, axis, -rest * inverse, half.tolerance * std::abs(inverse), low, high);
+    low = run.low;
+    high = run.high;
   }
 
   template <typename Visit>
   void visitFamily(const Family& family, const VoxelBox& part, Visit& visit) const {
-    int low_z = part.low.z, high_z = part.high.z;
-    for (int i = 0; i < family.first_y; ++i)
-      narrow(family, family.planes[size_t(i)], {0, 0, 0}, 2, low_z, high_z);
-    for (int z = low_z; z <= high_z; ++z) {
-      int low_y = part.low.y, high_y = part.high.y;
-      for (int i = family.first_y; i < family.first_x; ++i)
+    const PlaceBox& box = family.box;
+    const glm::ivec3 low = glm::max(glm::ivec3(box.low.x, box.low.y, box.low.z), part.low - box_.low);
+    const glm::ivec3 high = glm::min(glm::ivec3(box.high.x, box.high.y, box.high.z), part.high - box_.low);
+    for (int z = low.z; z <= high.z; ++z) {
+      int low_y = low.y, high_y = high.y;
+      for (int i = 0; i < family.first_x; ++i)
         narrow(family, family.planes[size_t(i)], {0, 0, z}, 1, low_y, high_y);
       for (int y = low_y; y <= high_y; ++y) {
-        int low_x = part.low.x, high_x = part.high.x;
-        for (int i = family.first_x; i < 5 && low_x <= high_x; ++i)
+        int low_x = low.x, high_x = high.x;
+        for (int i = family.first_x; i < family.count && low_x <= high_x; ++i)
           narrow(family, family.planes[size_t(i)], {0, y, z}, 0, low_x, high_x);
-        if (low_x <= high_x) visit(y, z, low_x, high_x);
+        if (low_x <= high_x) visit(y + box_.low.y, z + box_.low.z, low_x + box_.low.x, high_x + box_.low.x);
       }
     }
   }
@@ -112,6 +113,7 @@ class SeparatingRows {
   Separation separation_;
   VoxelBox box_;
   bool is_ready_ = false;
+  VoxelTriangle triangle_{};  ///< as seen from its box
   int count_ = 0;
   std::array<Family, 4> families_;
 };

@@ -9,7 +9,6 @@
 namespace sightline {
 namespace {
 
-constexpr size_t kBlocksATime = 512;                    // between two looks at `stop`
 constexpr int64_t kMostBlocksATime = int64_t(1) << 24;  // lists of a box of blocks, in all
 
 VoxelBox blocksOf(const Scene& scene, const Lattice& lattice) {
@@ -67,11 +66,12 @@ void voxelize(const Scene& scene, const VoxelizeOptions& options,
       }
     });
   };
-  voxelizeBy(make, kBlocksATime, scene, options, take);
+  const auto bin = [&](const VoxelBox& blocks) { return binTriangles(scene, options.lattice, blocks); };
+  voxelizeBy({bin, make}, scene, options, take);
 }
 
-void voxelizeBy(const MakeBricks& make, size_t blocks_a_time, const Scene& scene,
-                const VoxelizeOptions& options, const std::function<void(VoxelBlock&&)>& take) {
+void voxelizeBy(const VoxelizeSteps& steps, const Scene& scene, const VoxelizeOptions& options,
+                const std::function<void(VoxelBlock&&)>& take) {
   requireFits(options.lattice, sceneBounds(scene));
   const VoxelBox box = blocksOf(scene, options.lattice);
   const glm::ivec3 size = box.high - box.low + 1;
@@ -83,18 +83,18 @@ void voxelizeBy(const MakeBricks& make, size_t blocks_a_time, const Scene& scene
     const int layers = layersFrom(box, pairs, layer, options.memory);
     const VoxelBox part{{box.low.x, box.low.y, box.low.z + layer},
                         {box.high.x, box.high.y, box.low.z + layer + layers - 1}};
-    const BlockTriangles binned = binTriangles(scene, options.lattice, part);
+    const BlockTriangles binned = steps.bin(part);
     std::vector<size_t> filled;
     for (size_t i = 0; i + 1 < binned.first.size(); ++i) {
       if (binned.first[i] != binned.first[i + 1]) filled.push_back(i);
     }
-    for (size_t begin = 0; begin < filled.size(); begin += blocks_a_time) {
+    for (size_t begin = 0; begin < filled.size(); begin += steps.blocks_a_time) {
       if (options.stop != nullptr && *options.stop) throw Interrupted();
-      const size_t count = std::min(blocks_a_time, filled.size() - begin);
+      const size_t count = std::min(steps.blocks_a_time, filled.size() - begin);
       const auto now = std::span(filled).subspan(begin, count);
       std::vector<VoxelBlock> blocks(count);
       for (size_t i = 0; i < count; ++i) blocks[i].place = binned.placeOf(now[i]);
-      make(binned, now, blocks);
+      steps.make(binned, now, blocks);
       tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 1), [&](const auto& range) {
         for (size_t i = range.begin(); i < range.end(); ++i) {
           const auto triangles = binned.of(now[i]);

@@ -37,13 +37,20 @@ void voxelize(const Scene& scene, const VoxelizeOptions& options,
 /// The same, in memory.
 VoxelGrid voxelize(const Scene& scene, const VoxelizeOptions& options);
 
-/// Makes blocks' bricks (VoxelBlock::place is given) from the triangles of binned.of(filled[i]), blocks[i]
-/// being block filled[i]. filled: ascending, with a triangle each.
-using MakeBricks = std::function<void(const BlockTriangles& binned, std::span<const size_t> filled,
-                                      std::span<VoxelBlock> blocks)>;
+/// Who does the two things that voxelising is made of, with results as those of this room's functions.
+struct VoxelizeSteps {
+  /// As binTriangles.
+  std::function<BlockTriangles(const VoxelBox& blocks)> bin;
+  /// Makes blocks' bricks (VoxelBlock::place is given) from the triangles of binned.of(filled[i]), blocks[i]
+  /// being block filled[i]. filled: ascending, with a triangle each.
+  std::function<void(const BlockTriangles& binned, std::span<const size_t> filled,
+                     std::span<VoxelBlock> blocks)>
+      make;
+  size_t blocks_a_time = 512;
+};
 
-/// voxelize with bricks from whoever makes the right ones, for so many blocks at a time.
-void voxelizeBy(const MakeBricks& make, size_t blocks_a_time, const Scene& scene,
-                const VoxelizeOptions& options, const std::function<void(VoxelBlock&&)>& take);
+/// voxelize by those steps.
+void voxelizeBy(const VoxelizeSteps& steps, const Scene& scene, const VoxelizeOptions& options,
+                const std::function<void(VoxelBlock&&)>& take);
 
 }  // namespace sightline

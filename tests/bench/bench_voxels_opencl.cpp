@@ -51,7 +51,7 @@ void benchVoxelizing(const VoxelBenchOptions& bench) {
                        : bench.separate == "6" ? Separation::k6
                                                : Separation::kConservative;
   options.with_triangles = bench.ids;
-  std::vector<double> seconds[2], parts[3];
+  std::vector<double> seconds[2], parts[4];
   OpenClVoxelized done;
   uint64_t voxels = 0;
   for (int run = 0; run <= bench.runs; ++run) {
@@ -72,24 +72,27 @@ void benchVoxelizing(const VoxelBenchOptions& bench) {
       parts[0].push_back(done.setup_seconds);
       parts[1].push_back(done.device_seconds);
       parts[2].push_back(done.host_seconds);
+      parts[3].push_back(done.bin_seconds);
     }
     if (blocks[0] != blocks[1]) throw Error(bench.scene + ": the device's voxels differ");
     voxels = 0;
     for (const VoxelBlock& block : blocks[0]) voxels += block.count();
   }
   const double host = medianOf(seconds[0]), device = medianOf(seconds[1]), working = medianOf(parts[1]),
-               collecting = medianOf(parts[2]);
+               collecting = medianOf(parts[2]), binning = medianOf(parts[3]);
   fmt::print(
-      "{}: {} triangles, voxels of {}: {} voxels, {} pairs; {} rows and {} pairs open, {} launches again\n",
-      bench.scene, scene.triangleCount(), options.lattice.voxelSize(), voxels, done.pairs, done.open_rows,
-      done.open_pairs, done.repeats);
-  fmt::print("  processor, {} threads: {:.3f} s, {:.1f} Mvoxels/s\n", bench.threads, host,
+      "{}: {} triangles, voxels of {}: {} voxels, {} pairs; {} triangles, {} rows and {} pairs open, {} "
+      "launches again\n",
+      bench.scene, scene.triangleCount(), options.lattice.voxelSize(), voxels, done.pairs,
+      done.open_triangles, done.open_rows, done.open_pairs, done.repeats);
+  fmt::print("  processor, {} threads: {:.4f} s, {:.1f} Mvoxels/s\n", bench.threads, host,
              double(voxels) * 1e-6 / host);
   fmt::print(
-      "  {}, {} threads on the host: {:.3f} s, {:.1f} Mvoxels/s, {:.1f} times; of it device and bus {:.3f}, "
-      "bricks and open rows {:.3f}, bins and ids {:.3f} s; before it {:.3f} s\n",
+      "  {}, {} threads on the host: {:.4f} s, {:.1f} Mvoxels/s, {:.1f} times; of it bins {:.4f}, voxels and "
+      "bus {:.4f}, "
+      "bricks and open rows {:.4f}, ids and the rest {:.4f} s; before it {:.3f} s\n",
       bench.device, tbb::info::default_concurrency(), device, double(voxels) * 1e-6 / device, host / device,
-      working, collecting, device - working - collecting, medianOf(parts[0]));
+      binning, working, collecting, device - working - collecting - binning, medianOf(parts[0]));
 }
 
 }  // namespace

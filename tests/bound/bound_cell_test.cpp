@@ -9,6 +9,7 @@
 #include "core/bound/hide.h"
 #include "tests/bound/sightings.h"
 #include "tests/support/boxes.h"
+#include "tests/support/instanced_scene.h"
 #include "tests/support/make_cell.h"
 
 namespace sightline::bound_test {
@@ -317,6 +318,26 @@ TEST(BoundCell, SeesThroughWhatRaysPass) {
     const CellBound bound = boundCell(voxels, makeCell({0, 0, 0}, {2, 2, 2}));
     EXPECT_EQ(std::binary_search(bound.triangles.begin(), bound.triangles.end(), inside), surface != 0)
         << surface;
+  }
+}
+
+// Where triangles are stored once and shown in several places, they are opaque or not in each.
+TEST(BoundCell, WallsOfInstancesAreThoseOfThePlainScene) {
+  for (uint64_t seed = 1; seed <= 6; ++seed) {
+    Scene scene = testing_support::withSurfaces(
+        testing_support::randomInstances(seed, 20, seed == 1 ? 1 : 40, 5), seed);
+    if (seed == 2) {  // a mesh of which nothing is opaque
+      const SceneMesh& mesh = scene.meshes[0];
+      for (uint32_t i = 0; i < mesh.triangle_count; ++i) {
+        scene.surfaces.words[mesh.first_triangle + i] = kSurfaceGlass;
+      }
+    }
+    const Scene flat = flatten(scene);
+    const BoundScene got = voxelsOf(scene), wanted = voxelsOf(flat);
+    ASSERT_TRUE(got.opaque && wanted.opaque) << seed;
+    EXPECT_EQ(got.all.blocks, wanted.all.blocks) << seed;
+    EXPECT_EQ(got.opaque->blocks, wanted.opaque->blocks) << seed;
+    EXPECT_LT(wanted.opaque->count(), wanted.all.count()) << seed;
   }
 }
 

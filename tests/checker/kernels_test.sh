@@ -29,9 +29,10 @@ run() {
 run --inst-counts "$program"
 run "$program" scenes
 echo "Instructions executed for kernel 'traceGlass':" >>"$work/out"
-# The voxeliser's program has one kernel, without which there would be no voxels.
+# The voxeliser's program has two kernels, without which there would be no voxels.
 run "$program" voxels
-echo "Instructions executed for kernel 'voxelizeBlocks':" >>"$work/out"
+echo "Instructions executed for kernel 'voxelizeBlocks':
+Instructions executed for kernel 'binIntoBlocks':" >>"$work/out"
 sed -n 's/^kernel //p' "$work/out" | sort -u >"$work/all"
 sed -nE "s/^Instructions executed for kernel '(.*)':$/\1/p" "$work/out" | sort -u >"$work/ran"
 left_out=$(comm -23 "$work/all" "$work/ran")

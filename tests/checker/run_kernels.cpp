@@ -261,7 +261,7 @@ void voxelizeAll() {
     expect(found == wanted, what);
     expect(voxels > 500 && done.repeats > 0, what + ": too little to check");
   }
-  fmt::print("kernel voxelizeBlocks\n");
+  fmt::print("kernel voxelizeBlocks\nkernel binIntoBlocks\n");
 }
 
 void runAll(const std::string& what) {

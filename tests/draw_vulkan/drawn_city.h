@@ -2,16 +2,13 @@
 // A scene and a path through it, and the device that draws it.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdlib>
 
 #include "core/base/error.h"
-#include "core/draw/draw_scene.h"
-#include "core/draw/make_camera.h"
 #include "core/draw/vulkan/depth_check.h"
 #include "core/draw/vulkan/vulkan_query_backend.h"
-#include "core/generate/generate.h"
 #include "core/vulkan/vulkan_devices.h"
+#include "tests/draw/draw_cases.h"
 #include "tests/support/boxes.h"
 
 namespace sightline::drawing_cases {
@@ -31,11 +28,7 @@ inline bool canDraw() {
   return false;
 }
 
-inline Camera cameraAt(const DrawScene& scene, const glm::dvec3& eye, const glm::dvec3& look, uint32_t width,
-                       uint32_t height) {
-  return makeCamera(lookAt(eye, look, 60, width, height), width, height,
-                    nearDistance(boundsOf(scene.drawables)));
-}
+using draw_cases::cameraAt;
 
 /// A generated scene, drawn in parts of at most 128 triangles.
 struct City {
@@ -45,7 +38,8 @@ struct City {
       : City(generateScene(name, triangles, 1)) {}
   explicit City(Scene its) : scene(std::move(its)), parts(makeDrawScene(scene, {.split = 128})) {}
 
-  /// Down a street, a turn, a cut to elsewhere, and up above all.
+  /// Down a street, a turn, a cut to elsewhere, and up above all: another walk than draw_cases::cityWalk, on
+  /// which a box that is a pixel too small hides something.
   std::vector<Camera> path(uint32_t frames, uint32_t width, uint32_t height) const {
     const AxisBox bounds = boundsOf(parts.drawables);
     const glm::dvec3 low(bounds.low), size = glm::dvec3(bounds.high) - low;

@@ -250,6 +250,47 @@ TEST(GpuCulling, DrawsCandidatesOnly) {
   }
 }
 
+/// Commands are recorded once for frames that have them in common, and anew for other images and candidates;
+/// no frame differs from one that draws everything.
+TEST(GpuCulling, RecordsOnce) {
+  SL_SKIP_WITHOUT_DRAWING();
+  const City mixed(drawing_cases::withSurfaces(generateScene("city", 4000, 2), false));
+  VulkanDrawing drawing("vulkan", mixed.scene, mixed.parts.drawables);
+  DepthCheck check(drawing);
+  for (const GpuMethod method : {GpuMethod::hiz, GpuMethod::boxes, GpuMethod::hizMeshlets}) {
+    GpuCulling culling(drawing, method);
+    const auto draw = [&](uint32_t frames, uint32_t width, uint32_t height) {
+      const uint64_t before = drawing.ring().recordings();
+      for (const Camera& camera : mixed.path(frames, width, height)) {
+        culling.drawFrame(camera);
+        EXPECT_EQ(check.compare(&culling).false_pixels, 0u);
+      }
+      return drawing.ring().recordings() - before;
+    };
+    EXPECT_EQ(draw(20, 97, 61), 2u) << "the first frame forgets";
+    EXPECT_EQ(draw(20, 97, 61), 0u);
+    EXPECT_EQ(draw(8, 160, 120), 1u);
+    culling.forget();
+    EXPECT_EQ(draw(8, 160, 120), 1u) << "what was recorded before is there still";
+    // Frames under way: as many recordings, not more.
+    const uint64_t before = drawing.ring().recordings();
+    for (const Camera& camera : mixed.path(60, 160, 120)) {
+      culling.drawFrame(camera);
+      drawing.ring().gpuTimes(drawing.frame() - 2);
+    }
+    EXPECT_LE(drawing.ring().recordings() - before, 3u);
+    // Candidates: recorded anew where they change.
+    std::vector<uint32_t> all(mixed.parts.drawables.list.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const uint64_t without = drawing.ring().recordings();
+    for (int frame = 0; frame < 9; ++frame) {
+      culling.drawFrame(mixed.path(8, 97, 61)[3], all, frame % 4 == 3);
+      EXPECT_EQ(check.compare(&culling).false_pixels, 0u);
+    }
+    EXPECT_EQ(drawing.ring().recordings() - without, 4u) << "the first, two changes, and what is in common";
+  }
+}
+
 /// Every triangle of an opaque drawable is in one meshlet, whose box holds it; the words of a meshlet name
 /// the same.
 TEST(CullUnits, MeshletsHoldTheDrawablesTriangles) {

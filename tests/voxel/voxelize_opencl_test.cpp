@@ -80,7 +80,7 @@ constexpr Separation kAllSeparations[] = {Separation::kConservative, Separation:
 
 // Right: the device's blocks are the processor's, byte for byte.
 TEST(VoxelizeOpenCl, IsTheProcessorsByteForByte) {
-  uint64_t open_of_doubles = 0, open_of_floats = 0;
+  uint64_t open_of_doubles = 0, open_of_floats = 0, open_triangles = 0;
   for (int kind = 0; kind < 7; ++kind) {
     const Scene scene = hardScene(kind, 120);
     for (const Separation separation : kAllSeparations) {
@@ -93,12 +93,14 @@ TEST(VoxelizeOpenCl, IsTheProcessorsByteForByte) {
             << "kind " << kind << ", separation " << int(separation) << ", floats " << floats;
         EXPECT_GT(found.done.pairs, 120u);
         const uint64_t open = found.done.open_rows + found.done.open_pairs;
+        open_triangles += found.done.open_triangles;
         (floats ? open_of_floats : open_of_doubles) += open;
         // Doubles decide all of what has few bits, ties too.
         EXPECT_TRUE(kind > 2 || floats || open < 10) << "kind " << kind << ": " << open;
       }
     }
   }
+  EXPECT_GT(open_triangles, 20u);
   EXPECT_GT(open_of_doubles, 100u);
   EXPECT_GT(open_of_floats, open_of_doubles);
 }

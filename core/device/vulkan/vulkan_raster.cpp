@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/device/vulkan/tracing_needs.h"
+#include "core/vulkan/graphics_pipeline.h"
 #include "core/vulkan/vulkan_stage.h"
 
 namespace sightline {
@@ -159,60 +160,15 @@ void VulkanRaster::createFramebuffer() {
 }
 
 void VulkanRaster::createPipelines() {
-  const VulkanHandle<VkShaderModule> vertex = shaderModule(context_, "hemicube.vert");
-  const VulkanHandle<VkShaderModule> fragment = shaderModule(context_, "hemicube.frag");
-  const VkPipelineShaderStageCreateInfo stages[] = {stageInfo(VK_SHADER_STAGE_VERTEX_BIT, vertex.get()),
-                                                    stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.get())};
-  const auto input = vkStruct<VkPipelineVertexInputStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);  // the shader reads the corners itself
-  auto assembly = vkStruct<VkPipelineInputAssemblyStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
-  assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  const auto side = static_cast<float>(resolution_);
-  const VkViewport whole{0, 0, side, side, 0, 1};
-  const VkRect2D area{{0, 0}, {resolution_, resolution_}};
-  auto viewport =
-      vkStruct<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
-  viewport.viewportCount = viewport.scissorCount = 1;
-  viewport.pViewports = &whole;
-  viewport.pScissors = &area;
-  auto raster = vkStruct<VkPipelineRasterizationStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
-  raster.polygonMode = VK_POLYGON_MODE_FILL;
-  raster.cullMode = VK_CULL_MODE_NONE;
-  raster.lineWidth = 1;
-  auto samples = vkStruct<VkPipelineMultisampleStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  auto depth = vkStruct<VkPipelineDepthStencilStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
-  depth.depthTestEnable = depth.depthWriteEnable = VK_TRUE;
-  depth.depthCompareOp = VK_COMPARE_OP_GREATER;  // of equal ones the first leaf
   VkPipelineColorBlendAttachmentState write{};
   write.colorWriteMask = VK_COLOR_COMPONENT_R_BIT;
-  auto blend =
-      vkStruct<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-  blend.attachmentCount = 1;
-  blend.pAttachments = &write;
-  auto info = vkStruct<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
-  info.stageCount = 2;
-  info.pStages = stages;
-  info.pVertexInputState = &input;
-  info.pInputAssemblyState = &assembly;
-  info.pViewportState = &viewport;
-  info.pRasterizationState = &raster;
-  info.pMultisampleState = &samples;
-  info.pDepthStencilState = &depth;
-  info.pColorBlendState = &blend;
-  info.layout = layout_.get();
-  info.renderPass = pass_.get();
-  for (uint32_t view = 0; view < kHemicubeViews; ++view) {
-    info.subpass = view;
-    VkPipeline pipeline = VK_NULL_HANDLE;
-    checkVk(context_.api().vkCreateGraphicsPipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr,
-                                                     &pipeline),
-            "vkCreateGraphicsPipelines");
-    pipelines_[view] = {context_, pipeline, destroyPipeline};
+  for (uint32_t view = 0; view < kHemicubeViews; ++view) {  // of equally near leaves the first is drawn
+    pipelines_[view] = graphicsPipeline(context_, {.vertex = "hemicube.vert",
+                                                   .fragment = "hemicube.frag",
+                                                   .images = {&write, 1},
+                                                   .layout = layout_.get(),
+                                                   .pass = pass_.get(),
+                                                   .subpass = view});
   }
 }
 
@@ -232,6 +188,7 @@ void VulkanRaster::draw() {
   begin.clearValueCount = 2;
   begin.pClearValues = clear;
   api.vkCmdBeginRenderPass(buffer, &begin, VK_SUBPASS_CONTENTS_INLINE);
+  setWholeViewport(context_, buffer, resolution_, resolution_);
   for (uint32_t view = 0; view < kHemicubeViews; ++view) {
     if (view > 0) api.vkCmdNextSubpass(buffer, VK_SUBPASS_CONTENTS_INLINE);
     api.vkCmdBindPipeline(buffer, VK_PIPELINE_BIND_POINT_GRAPHICS, pipelines_[view].get());

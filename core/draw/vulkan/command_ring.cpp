@@ -101,17 +101,31 @@ double CommandRing::spent(CpuWork work, double begin) {
   return end - begin;
 }
 
-CommandRing::Entry& CommandRing::open(uint32_t queries, uint64_t box_bytes, uint64_t result_bytes) {
-  const VulkanApi& api = context_.api();
-  const double opened = now();
-  Entry* oldest = entries_.front().get();
-  if (oldest->running && api.vkGetFenceStatus(context_.device(), oldest->fence.get()) != VK_SUCCESS) {
-    entries_.push_front(make());
-  } else {
-    harvest(*oldest);
-  }
+bool CommandRing::hasRun(const Entry& entry) const {
+  return !entry.running ||
+         context_.api().vkGetFenceStatus(context_.device(), entry.fence.get()) == VK_SUCCESS;
+}
+
+CommandRing::Entry& CommandRing::take() {
+  if (!hasRun(*entries_.front())) entries_.push_front(make());
   Entry& entry = *entries_.front();
+  harvest(entry);
   std::rotate(entries_.begin(), entries_.begin() + 1, entries_.end());
+  return entry;
+}
+
+void CommandRing::start(Entry& entry, double opened) {
+  entry.frame = frame_;
+  entry.serial = ++serial_;
+  entry.opened = opened;
+  if (entry.times.get() != VK_NULL_HANDLE) {
+    context_.api().vkResetQueryPool(context_.device(), entry.times.get(), 0, kTimes);
+  }
+}
+
+void CommandRing::record(Entry& entry, uint32_t queries, uint64_t box_bytes, uint64_t result_bytes,
+                         bool once) {
+  const VulkanApi& api = context_.api();
   reserveQueries(entry, queries);
   if (entry.boxes.bytes() < box_bytes) {
     entry.boxes = VulkanBuffer();
@@ -123,18 +137,42 @@ CommandRing::Entry& CommandRing::open(uint32_t queries, uint64_t box_bytes, uint
   }
   entry.answers = std::make_shared<Answers>(queries, int8_t(-1));
   entry.parts.clear();
-  entry.frame = frame_;
-  entry.serial = ++serial_;
-  entry.opened = opened;
+  entry.recorded = false;
+  ++recordings_;
   checkVk(api.vkResetCommandPool(context_.device(), entry.pool.get(), 0), "vkResetCommandPool");
   auto info = vkStruct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
-  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  info.flags = once ? VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT : 0;
   checkVk(api.vkBeginCommandBuffer(entry.commands, &info), "vkBeginCommandBuffer");
-  if (entry.times.get() != VK_NULL_HANDLE) {
-    api.vkResetQueryPool(context_.device(), entry.times.get(), 0, kTimes);
-    // After all that was submitted before: times of submits do not overlap.
-    api.vkCmdWriteTimestamp(entry.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, entry.times.get(), 0);
+  if (entry.times.get() == VK_NULL_HANDLE) return;
+  // After all that was submitted before: times of submits do not overlap.
+  api.vkCmdWriteTimestamp(entry.commands, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, entry.times.get(), 0);
+}
+
+CommandRing::Entry& CommandRing::open(uint32_t queries, uint64_t box_bytes, uint64_t result_bytes) {
+  const double opened = now();
+  Entry& entry = take();
+  entry.key = 0;
+  start(entry, opened);
+  record(entry, queries, box_bytes, result_bytes, true);
+  return entry;
+}
+
+CommandRing::Entry& CommandRing::openKept(uint64_t key, uint64_t box_bytes, uint64_t result_bytes) {
+  const double opened = now();
+  const auto kept = std::ranges::find_if(
+      entries_, [&](const std::unique_ptr<Entry>& entry) { return entry->key == key && hasRun(*entry); });
+  if (kept != entries_.end()) {
+    Entry& entry = **kept;
+    harvest(entry);
+    std::rotate(kept, kept + 1, entries_.end());
+    start(entry, opened);
+    entry.recorded = true;
+    return entry;
   }
+  Entry& entry = take();
+  entry.key = key;
+  start(entry, opened);
+  record(entry, 0, box_bytes, result_bytes, false);
   return entry;
 }
 
@@ -147,7 +185,7 @@ void CommandRing::mark(Entry& entry, GpuPart part) {
 
 void CommandRing::submit(Entry& entry) {
   const VulkanApi& api = context_.api();
-  checkVk(api.vkEndCommandBuffer(entry.commands), "vkEndCommandBuffer");
+  if (!entry.recorded) checkVk(api.vkEndCommandBuffer(entry.commands), "vkEndCommandBuffer");
   cpu_.record += spent(CpuWork::record, entry.opened);
   const double recorded = now();
   checkVk(api.vkResetFences(context_.device(), 1, entry.fence.address()), "vkResetFences");

@@ -75,6 +75,8 @@ class CommandRing {
     uint64_t frame = 0, serial = 0;
     bool running = false;
     double opened = 0;
+    uint64_t key = 0;       ///< of what is recorded: not 0 where it may be submitted again
+    bool recorded = false;  ///< has been, in an earlier frame: nothing is to be recorded
   };
 
   CommandRing(const VulkanContext& context, DrawClock clock, SubmitChain chain = SubmitChain::barriers);
@@ -85,6 +87,10 @@ class CommandRing {
   void beginFrame(uint64_t frame);
   /// An entry that records, with room for so many queries and bytes of boxes and results.
   Entry& open(uint32_t queries, uint64_t box_bytes, uint64_t result_bytes);
+  /// The same for commands that frames have in common: those that were recorded under the key (newKey) are
+  /// there again (Entry::recorded), if they have run, and are to be submitted as they are.
+  Entry& openKept(uint64_t key, uint64_t box_bytes, uint64_t result_bytes);
+  uint64_t newKey() { return ++keys_; }
   /// What was recorded since the last mark, or the start, belongs to the part.
   void mark(Entry& entry, GpuPart part);
   void submit(Entry& entry);
@@ -105,7 +111,8 @@ class CommandRing {
   /// Since beginFrame.
   const CpuTimes& cpuTimes() const { return cpu_; }
   size_t size() const { return entries_.size(); }
-  uint64_t waits() const { return waits_; }  ///< for answers, since it was made
+  uint64_t waits() const { return waits_; }            ///< for answers, since it was made
+  uint64_t recordings() const { return recordings_; }  ///< of command buffers, likewise
 
  private:
   struct GpuSpan {
@@ -120,6 +127,12 @@ class CommandRing {
   };
 
   std::unique_ptr<Entry> make() const;
+  /// To be recorded anew; the oldest that has run, or a new one.
+  Entry& take();
+  /// Whether it has run, as far as is known without waiting.
+  bool hasRun(const Entry& entry) const;
+  void start(Entry& entry, double opened);
+  void record(Entry& entry, uint32_t queries, uint64_t box_bytes, uint64_t result_bytes, bool once);
   double now() const { return clock_ ? clock_() : 0; }
   /// Takes the answers from this one on that are there.
   void takeAnswers(Entry& entry, Answers& answers, uint32_t first);
@@ -139,7 +152,7 @@ class CommandRing {
   std::deque<FrameLog> frames_;                 ///< the last few
   std::vector<std::array<uint32_t, 2>> taken_;  ///< samples, and whether they are there; kept for its memory
   CpuTimes cpu_;
-  uint64_t frame_ = 0, serial_ = 0, waits_ = 0;
+  uint64_t frame_ = 0, serial_ = 0, waits_ = 0, keys_ = 0, recordings_ = 0;
 };
 
 }  // namespace sightline

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/base/error.h"
+#include "core/vulkan/graphics_pipeline.h"
 #include "vk_shaders/draw_launch.h"
 
 namespace sightline {
@@ -116,12 +117,8 @@ void DrawTarget::begin(const VulkanContext& context, VkCommandBuffer commands, c
   begin.renderArea = {{0, 0}, {width_, height_}};
   begin.clearValueCount = clear ? (passes.glass() ? 3 : 2) : 0;
   begin.pClearValues = values;
-  const VulkanApi& api = context.api();
-  api.vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-  const VkViewport viewport{0, 0, float(width_), float(height_), 0, 1};
-  const VkRect2D scissor{{0, 0}, {width_, height_}};
-  api.vkCmdSetViewport(commands, 0, 1, &viewport);
-  api.vkCmdSetScissor(commands, 0, 1, &scissor);
+  context.api().vkCmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+  setWholeViewport(context, commands, width_, height_);
 }
 
 void DrawTarget::copy(const VulkanContext& context, VkCommandBuffer commands, Image image,

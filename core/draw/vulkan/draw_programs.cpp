@@ -1,6 +1,6 @@
 #include "core/draw/vulkan/draw_programs.h"
 
-#include <vector>
+#include "core/vulkan/graphics_pipeline.h"
 
 namespace sightline {
 namespace {
@@ -79,65 +79,16 @@ VkPipeline DrawPrograms::graphics(DrawKind kind) {
   if (made.get() != VK_NULL_HANDLE) return made.get();
   const Shaders names = shadersOf(kind);
   const bool boxes = kind == DrawKind::query_box || kind == DrawKind::unit_box;
-  const VulkanHandle<VkShaderModule> vertex = shaderModule(context_, names.vertex);
-  VulkanHandle<VkShaderModule> fragment;
-  std::vector<VkPipelineShaderStageCreateInfo> stages = {stageInfo(
-      kind == DrawKind::meshlets ? VK_SHADER_STAGE_MESH_BIT_EXT : VK_SHADER_STAGE_VERTEX_BIT, vertex.get())};
-  if (names.fragment != nullptr) {
-    fragment = shaderModule(context_, names.fragment);
-    stages.push_back(stageInfo(VK_SHADER_STAGE_FRAGMENT_BIT, fragment.get()));
-  }
-  const auto input = vkStruct<VkPipelineVertexInputStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);  // the shaders read vertices themselves
-  auto assembly = vkStruct<VkPipelineInputAssemblyStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
-  assembly.topology = boxes ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  auto viewport =
-      vkStruct<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
-  viewport.viewportCount = viewport.scissorCount = 1;
-  const VkDynamicState sizes[] = {VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  auto dynamic =
-      vkStruct<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
-  dynamic.dynamicStateCount = 2;
-  dynamic.pDynamicStates = sizes;
-  auto raster = vkStruct<VkPipelineRasterizationStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
-  raster.polygonMode = VK_POLYGON_MODE_FILL;
-  raster.cullMode = VK_CULL_MODE_NONE;
-  raster.lineWidth = 1;
-  auto samples = vkStruct<VkPipelineMultisampleStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-  samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  auto depth = vkStruct<VkPipelineDepthStencilStateCreateInfo>(
-      VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
-  depth.depthTestEnable = VK_TRUE;
-  depth.depthWriteEnable = boxes || kind == DrawKind::glass ? VK_FALSE : VK_TRUE;
-  depth.depthCompareOp = boxes ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_GREATER;
   const auto images = blendingOf(kind);
-  auto blend =
-      vkStruct<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-  blend.attachmentCount = passes_.glass() ? 2 : 1;
-  blend.pAttachments = images.data();
-  auto info = vkStruct<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
-  info.stageCount = uint32_t(stages.size());
-  info.pStages = stages.data();
-  if (kind != DrawKind::meshlets) {
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
-  }
-  info.pViewportState = &viewport;
-  info.pRasterizationState = &raster;
-  info.pMultisampleState = &samples;
-  info.pDepthStencilState = &depth;
-  info.pColorBlendState = &blend;
-  info.pDynamicState = &dynamic;
-  info.layout = layout_.get();
-  info.renderPass = passes_.clearing();
-  VkPipeline pipeline = VK_NULL_HANDLE;
-  checkVk(context_.api().vkCreateGraphicsPipelines(context_.device(), VK_NULL_HANDLE, 1, &info, nullptr,
-                                                   &pipeline),
-          "vkCreateGraphicsPipelines");
-  made = {context_, pipeline, destroyPipeline};
+  made = graphicsPipeline(context_, {.vertex = names.vertex,
+                                     .fragment = names.fragment == nullptr ? "" : names.fragment,
+                                     .mesh = kind == DrawKind::meshlets,
+                                     .strips = boxes,
+                                     .writes_depth = !boxes && kind != DrawKind::glass,
+                                     .draws_as_near = boxes,
+                                     .images = std::span(images).first(passes_.glass() ? 2 : 1),
+                                     .layout = layout_.get(),
+                                     .pass = passes_.clearing()});
   return made.get();
 }
 

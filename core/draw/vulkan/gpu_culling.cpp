@@ -148,8 +148,7 @@ void GpuCulling::between(VkCommandBuffer commands) const {
       VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
 }
 
-void GpuCulling::prepare(VkCommandBuffer commands, const std::span<const uint32_t>* candidates,
-                         bool changed) {
+void GpuCulling::fit(bool restricted) {
   const VulkanContext& context = drawing_.context();
   const uint64_t texels = levelStart(drawing_.camera().size.x, drawing_.camera().size.y,
                                      pyramidLevels(drawing_.camera().size.x, drawing_.camera().size.y));
@@ -160,28 +159,30 @@ void GpuCulling::prepare(VkCommandBuffer commands, const std::span<const uint32_
     pyramid_texels_ = texels;
   }
   numbers_.pyramid = pyramid_.address();
-  numbers_.candidates = candidates != nullptr ? candidates_.address() : 0;
+  numbers_.candidates = restricted ? candidates_.address() : 0;
+  const Kept kept{drawing_.targets(), restricted, pyramid_.address()};
+  if (kept == kept_) return;
+  kept_ = kept;
+  key_ = drawing_.ring().newKey();
+}
+
+void GpuCulling::prepare(VkCommandBuffer commands, std::span<const uint32_t> new_candidates) {
+  const VulkanContext& context = drawing_.context();
   drawing_.barrier(commands, kShaderStages | VK_PIPELINE_STAGE_TRANSFER_BIT,
                    VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
                    VK_ACCESS_TRANSFER_WRITE_BIT);
   updateBuffer(context, commands, launch_, &numbers_, sizeof numbers_);
   context.api().vkCmdFillBuffer(commands, heads_.get(), 0, kAll * kHeadWords * 4, 0);
   if (forget_) context.api().vkCmdFillBuffer(commands, states_.get(), 0, VK_WHOLE_SIZE, 0);
-  forget_ = false;
-  if (candidates != nullptr && (changed || !restricted_)) {
-    std::vector<uint32_t> bits(drawing_.mesh().drawables().list.size() / 32 + 1);
-    for (const uint32_t drawable : *candidates) bits[drawable / 32] |= 1u << drawable % 32;
-    updateBuffer(context, commands, candidates_, bits.data(), bits.size() * 4);
+  if (!new_candidates.empty()) {
+    updateBuffer(context, commands, candidates_, new_candidates.data(), new_candidates.size_bytes());
   }
-  restricted_ = candidates != nullptr;
-  orderBlended(commands);
   drawing_.barrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, kShaderStages,
                    VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
 }
 
-void GpuCulling::orderBlended(VkCommandBuffer commands) {
+std::vector<uint32_t> GpuCulling::blendedOrder() const {
   const Range blended = range(AlphaKind::blended);
-  if (blended.count == 0) return;
   const Camera& camera = drawing_.camera();
   const glm::dvec3 eye(xyz3(camera.eye)), forward(xyz3(camera.forward));
   std::vector<std::pair<double, uint32_t>> distances(blended.count);
@@ -193,7 +194,7 @@ void GpuCulling::orderBlended(VkCommandBuffer commands) {
   std::sort(distances.rbegin(), distances.rend());
   std::vector<uint32_t> order;
   for (const auto& [distance, unit] : distances) order.push_back(unit);
-  updateBuffer(drawing_.context(), commands, order_, order.data(), order.size() * 4);
+  return order;
 }
 
 void GpuCulling::test(VkCommandBuffer commands, Range range, uint32_t list, uint32_t test) {
@@ -314,8 +315,27 @@ void GpuCulling::drawFrame(const Camera& camera, std::span<const uint32_t> candi
 
 void GpuCulling::drawAmong(const Camera& camera, const std::span<const uint32_t>* candidates, bool changed) {
   drawing_.beginFrame(camera);
-  CommandRing::Entry& entry = drawing_.open(0, 0, kHeadBytes);
-  prepare(entry.commands, candidates, changed);
+  std::vector<uint32_t> bits;
+  if (candidates != nullptr && (changed || !restricted_)) {
+    bits.resize(drawing_.mesh().drawables().list.size() / 32 + 1);
+    for (const uint32_t drawable : *candidates) bits[drawable / 32] |= 1u << drawable % 32;
+  }
+  restricted_ = candidates != nullptr;
+  fit(restricted_);
+  // What is forgotten, or new in this frame, no other frame has in common with it.
+  const bool common = !forget_ && bits.empty();
+  CommandRing::Entry& entry =
+      drawing_.openKept(common ? key_ : drawing_.ring().newKey(), blendedOrder(), order_, kHeadBytes);
+  if (!entry.recorded) record(entry, bits);
+  forget_ = false;
+  drawing_.submit(entry);
+  drawing_.endFrame();
+  last_ = &entry;
+  last_serial_ = entry.serial;
+}
+
+void GpuCulling::record(CommandRing::Entry& entry, std::span<const uint32_t> new_candidates) {
+  prepare(entry.commands, new_candidates);
   const Range opaque = range(AlphaKind::opaque);
   test(entry.commands, opaque, kEarly, kTestBefore);
   between(entry.commands);
@@ -334,10 +354,6 @@ void GpuCulling::drawAmong(const Camera& camera, const std::span<const uint32_t>
   drawing_.context().api().vkCmdCopyBuffer(entry.commands, heads_.get(), entry.results.get(), 1, &all);
   drawing_.barrier(entry.commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
                    VK_PIPELINE_STAGE_HOST_BIT, VK_ACCESS_HOST_READ_BIT);
-  drawing_.submit(entry);
-  drawing_.endFrame();
-  last_ = &entry;
-  last_serial_ = entry.serial;
 }
 
 FrameCounts GpuCulling::counts() {

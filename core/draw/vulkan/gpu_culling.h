@@ -24,7 +24,8 @@ std::string whyNotCull(const VulkanDrawing& drawing, GpuMethod method);
 
 /// Culls on the GPU in two passes: what was seen in the frame before is drawn at once; what that hides is
 /// found, by a pyramid of its depth or by drawn boxes; what is seen and was not drawn is drawn then. The
-/// processor records one submit a frame, whatever is seen, and waits for nothing.
+/// processor submits once a frame, whatever is seen, and waits for nothing; what it submits is recorded once
+/// for all frames, but for those whose candidates are new.
 ///
 /// Based on: the two passes of S. Hill and D. Collin, Practical, Dynamic Visibility for Games, GPU Pro 2,
 /// 2011, and of U. Haar and S. Aaltonen, GPU-Driven Rendering Pipelines, SIGGRAPH 2015. Where we differ: the
@@ -72,9 +73,12 @@ class GpuCulling {
   void createBuffers();
   uint32_t opaqueKind() const;  ///< of write_draws.comp
   void drawAmong(const Camera& camera, const std::span<const uint32_t>* candidates, bool changed);
-  /// candidates: nothing where all may be drawn.
-  void prepare(VkCommandBuffer commands, const std::span<const uint32_t>* candidates, bool changed);
-  void orderBlended(VkCommandBuffer commands);
+  /// Buffers for the drawing's images; a new key where what is recorded differs.
+  void fit(bool restricted);
+  void record(CommandRing::Entry& entry, std::span<const uint32_t> new_candidates);
+  /// new_candidates: a bit a drawable; empty: they are as before, or all.
+  void prepare(VkCommandBuffer commands, std::span<const uint32_t> new_candidates);
+  std::vector<uint32_t> blendedOrder() const;
   void test(VkCommandBuffer commands, Range range, uint32_t list, uint32_t test);
   void writeDraws(VkCommandBuffer commands, Range range, uint32_t list, uint32_t kind);
   void drawOpaque(VkCommandBuffer commands, uint32_t list);
@@ -91,6 +95,15 @@ class GpuCulling {
   bool meshes_ = false, forget_ = true, restricted_ = false;
   CullLaunch numbers_{};
   uint64_t pyramid_texels_ = 0;
+  /// What the commands of frames with the same key have in common.
+  struct Kept {
+    uint64_t targets = 0;
+    bool restricted = false;
+    VkDeviceAddress pyramid = 0;
+    bool operator==(const Kept&) const = default;
+  };
+  Kept kept_;
+  uint64_t key_ = 0;
   CommandRing::Entry* last_ = nullptr;
   uint64_t last_serial_ = 0;
   VulkanBuffer launch_, unit_buffer_, states_, block_counts_, draws_, listed_, heads_, pyramid_, candidates_,

@@ -28,6 +28,7 @@ void VulkanDrawing::beginFrame(const Camera& camera) {
     ring_.drain();
     target_ = DrawTarget();
     target_ = DrawTarget(context_, passes_, camera.size.x, camera.size.y);
+    ++targets_;
   }
   launch_.camera = camera;
   described_ = drawn_ = false;
@@ -43,6 +44,25 @@ CommandRing::Entry& VulkanDrawing::open(uint32_t queries, uint64_t box_bytes, ui
             VK_ACCESS_SHADER_READ_BIT);
     described_ = true;
   }
+  return entry;
+}
+
+CommandRing::Entry& VulkanDrawing::openKept(uint64_t key, std::span<const uint32_t> data,
+                                            const VulkanBuffer& to, uint64_t result_bytes) {
+  CommandRing::Entry& entry = ring_.openKept(key, sizeof launch_ + data.size_bytes(), result_bytes);
+  auto* out = static_cast<char*>(entry.boxes.mapped());
+  std::memcpy(out, &launch_, sizeof launch_);
+  if (!data.empty()) std::memcpy(out + sizeof launch_, data.data(), data.size_bytes());
+  described_ = true;
+  drawn_ = entry.recorded;
+  if (entry.recorded) return entry;
+  barrier(entry.commands, kShaders, 0, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
+  const VkBufferCopy first{0, 0, sizeof launch_}, second{sizeof launch_, 0, data.size_bytes()};
+  const VulkanApi& api = context_.api();
+  api.vkCmdCopyBuffer(entry.commands, entry.boxes.get(), launch_buffer_.get(), 1, &first);
+  if (!data.empty()) api.vkCmdCopyBuffer(entry.commands, entry.boxes.get(), to.get(), 1, &second);
+  barrier(entry.commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT, kShaders,
+          VK_ACCESS_SHADER_READ_BIT);
   return entry;
 }
 

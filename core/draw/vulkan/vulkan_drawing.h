@@ -38,6 +38,12 @@ class VulkanDrawing {
   uint64_t frame() const { return frame_; }
   /// Starts a submit of the frame.
   CommandRing::Entry& open(uint32_t queries = 0, uint64_t box_bytes = 0, uint64_t result_bytes = 0);
+  /// The same for a frame of one submit, whose commands frames have in common: CommandRing::openKept. key: of
+  /// another number when the images are others (targets()). data: the frame's own, which goes to `to`.
+  CommandRing::Entry& openKept(uint64_t key, std::span<const uint32_t> data, const VulkanBuffer& to,
+                               uint64_t result_bytes);
+  /// Changes when the images do.
+  uint64_t targets() const { return targets_; }
   /// A pass into the images: the frame's first starts anew.
   void beginPass(CommandRing::Entry& entry);
   void endPass(CommandRing::Entry& entry);
@@ -69,7 +75,7 @@ class VulkanDrawing {
   DrawTarget target_;
   DrawLaunch launch_{};
   VulkanBuffer launch_buffer_;
-  uint64_t frame_ = 0;
+  uint64_t frame_ = 0, targets_ = 0;
   bool described_ = false, drawn_ = false;  ///< in this frame
   CommandRing ring_;                        // goes, and waits, first
 };

@@ -7,9 +7,11 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "cl_kernels/program_source.h"
+#include "core/base/error.h"
 #include "core/opencl/opencl_context.h"
 
 namespace sightline {
@@ -19,6 +21,8 @@ using VoxelizerClock = std::chrono::steady_clock;
 
 constexpr uint32_t kAllRows = 0xffffffffu;  // of cl_kernels/voxelize.cl, as are the next
 constexpr uint32_t kMostGroup = 256;
+constexpr uint32_t kBinGroup = 64;
+constexpr uint64_t kMostPairs = 0xffffffffu;  // at once: their places have 32 bits
 constexpr uint32_t kMaskWords =
     kBlockSide * kBlockSide * kBlockSide / (kBrickSide * kBrickSide * kBrickSide) / 32;
 
@@ -56,13 +60,52 @@ class OpenClVoxelizer {
         group_(std::min(tuning.group > 0 ? tuning.group : 64, kMostGroup)),
         brick_capacity_(std::max(tuning.bricks, 1u)),
         open_capacity_(std::max(tuning.open_rows, 1u)),
+        open_triangle_capacity_(open_capacity_),
         context_(device) {
     context_.build(kVoxelizeSource, buildOptionsOf(options.separation, tuning.floats));
     kernel_ = context_.kernel("voxelizeBlocks");
+    bin_kernel_ = context_.kernel("binIntoBlocks");
     counters_ = context_.buffer(sizeof(uint32_t) * 2, "counters");
     uploadTriangles();
     context_.finish();
     done_.setup_seconds = std::chrono::duration<double>(VoxelizerClock::now() - start_).count();
+  }
+
+  BlockTriangles bin(const VoxelBox& blocks) {
+    const VoxelizerClock::time_point start = VoxelizerClock::now();
+    BlockTriangles result;
+    result.blocks = blocks;
+    const glm::ivec3 size = blocks.high - blocks.low + 1;
+    const size_t count = size_t(size.x) * size_t(size.y) * size_t(size.z);
+    const std::vector<uint32_t> open = countInBlocks(blocks, count);
+    std::vector<uint32_t> counts(count);
+    context_.readFast(counts_, counts.data(), count * sizeof(uint32_t));
+    std::vector<std::pair<size_t, uint32_t>> more;  // blocks of triangles that the device left open
+    for (const uint32_t id : open) addBlocksOf(id, blocks, more);
+    result.first.assign(count + 1, 0);
+    for (size_t i = 0; i < count; ++i) result.first[i] = counts[i];
+    for (const auto& [block, id] : more) ++result.first[block];
+    uint64_t total = 0;
+    for (uint64_t& first : result.first) total += std::exchange(first, total);
+    if (total > kMostPairs) {
+      throw Error(
+          "a layer of blocks holds more triangles than this device's lists: take larger voxels, or "
+          "the processor");
+    }
+    result.ids.resize(total);
+    if (total > 0) {
+      fillBlocks(blocks, result);
+      for (const auto& [block, id] : more) result.ids[result.first[block] + counts[block]++] = id;
+    }
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, count), [&](const auto& range) {
+      for (size_t i = range.begin(); i < range.end(); ++i) {
+        std::sort(result.ids.begin() + int64_t(result.first[i]),
+                  result.ids.begin() + int64_t(result.first[i + 1]));
+      }
+    });
+    done_.open_triangles += open.size();
+    done_.bin_seconds += std::chrono::duration<double>(VoxelizerClock::now() - start).count();
+    return result;
   }
 
   void make(const BlockTriangles& binned, std::span<const size_t> filled, std::span<VoxelBlock> blocks) {
@@ -71,11 +114,12 @@ class OpenClVoxelizer {
     launchUntilListsSuffice(blocks.size());
     std::vector<uint32_t> first(2 * blocks.size()), masks(blocks.size() * kMaskWords);
     std::vector<OpenRow> open(open_count_);
-    bits_.resize(size_t(8) * brick_count_);
+    const size_t words = size_t(8) * brick_count_;
+    if (bits_.size() < words) bits_.resize(words);
     context_.read(first_brick_, first.data(), first.size() * sizeof(uint32_t));
     context_.read(masks_, masks.data(), masks.size() * sizeof(uint32_t));
     if (!open.empty()) context_.read(open_, open.data(), open.size() * sizeof(OpenRow));
-    if (!bits_.empty()) context_.readFast(bricks_, bits_.data(), bits_.size() * sizeof(uint64_t));
+    if (words > 0) context_.readFast(bricks_, bits_.data(), words * sizeof(uint64_t));
     const VoxelizerClock::time_point read = VoxelizerClock::now();
     // Work items list them in any order, and families of targets twice.
     std::sort(open.begin(), open.end());
@@ -94,6 +138,9 @@ class OpenClVoxelizer {
   }
 
   const OpenClVoxelized& done() const { return done_; }
+  uint64_t mostListBytes() const {
+    return std::min(context_.maxAllocationBytes(), kMostPairs * sizeof(uint32_t));
+  }
 
  private:
   void uploadTriangles() {
@@ -118,6 +165,61 @@ class OpenClVoxelizer {
   void upload(ClBuffer& buffer, const std::vector<T>& values, const char* what) {
     reserve(context_, buffer, values.size() * sizeof(T), what);
     context_.write(buffer, values.data(), values.size() * sizeof(T));
+  }
+
+  void launchBinning(const VoxelBox& blocks, bool fills) {
+    const glm::ivec3 size = blocks.high - blocks.low + 1;
+    context_.fill(counts_, 0, counts_.bytes());
+    context_.launch(bin_kernel_, scene_.triangleCount(), kBinGroup, positions_, triangles_,
+                    scene_.triangleCount(), float(std::ldexp(1.0, -options_.lattice.exponent) / kBlockSide),
+                    glm::ivec4(blocks.low, 0), glm::ivec4(size, 0), uint32_t(fills), open_triangle_capacity_,
+                    counts_, first_, ids_, open_triangles_, counters_);
+  }
+
+  // Into counts_; what is left open is returned, ascending.
+  std::vector<uint32_t> countInBlocks(const VoxelBox& blocks, size_t count) {
+    reserve(context_, counts_, count * sizeof(uint32_t), "counts of blocks");
+    reserve(context_, first_, sizeof(uint32_t), "blocks");
+    reserve(context_, ids_, sizeof(uint32_t), "triangles of blocks");
+    for (;;) {
+      reserve(context_, open_triangles_, sizeof(uint32_t) * uint64_t(open_triangle_capacity_),
+              "open triangles");
+      context_.fill(counters_, 0, sizeof(uint32_t) * 2);
+      launchBinning(blocks, false);
+      uint32_t counters[2];
+      context_.read(counters_, counters, sizeof counters);
+      std::vector<uint32_t> open(counters[1]);
+      if (counters[1] <= open_triangle_capacity_) {
+        if (!open.empty()) context_.read(open_triangles_, open.data(), open.size() * sizeof(uint32_t));
+        std::sort(open.begin(), open.end());
+        return open;
+      }
+      open_triangle_capacity_ = withRoom(counters[1]);
+      ++done_.repeats;
+    }
+  }
+
+  void addBlocksOf(uint32_t id, const VoxelBox& blocks,
+                   std::vector<std::pair<size_t, uint32_t>>& more) const {
+    const glm::ivec3 size = blocks.high - blocks.low + 1;
+    TriangleRows rows(inVoxels(scene_.corners(id), std::ldexp(1.0, -options_.lattice.exponent) / kBlockSide));
+    rows.visit(blocks, [&](int y, int z, int from, int to) {
+      for (int x = from; x <= to; ++x) {
+        more.emplace_back(
+            size_t(x - blocks.low.x) +
+                size_t(size.x) * (size_t(y - blocks.low.y) + size_t(size.y) * size_t(z - blocks.low.z)),
+            id);
+      }
+    });
+  }
+
+  // The device's part of the ids, in any order, at the beginning of each block's.
+  void fillBlocks(const VoxelBox& blocks, BlockTriangles& result) {
+    const std::vector<uint32_t> first(result.first.begin(), result.first.end());
+    upload(first_, first, "blocks");
+    reserve(context_, ids_, result.ids.size() * sizeof(uint32_t), "triangles of blocks");
+    launchBinning(blocks, true);
+    context_.readFast(ids_, result.ids.data(), result.ids.size() * sizeof(uint32_t));
   }
 
   void uploadPairs(const BlockTriangles& binned, std::span<const size_t> filled,
@@ -224,10 +326,11 @@ class OpenClVoxelizer {
   VoxelizerClock::time_point start_ = VoxelizerClock::now();
   const Scene& scene_;
   const VoxelizeOptions& options_;
-  uint32_t group_, brick_capacity_, open_capacity_;
+  uint32_t group_, brick_capacity_, open_capacity_, open_triangle_capacity_;
   uint32_t brick_count_ = 0, open_count_ = 0;
   OpenClContext context_;
-  ClKernel kernel_;
+  ClKernel kernel_, bin_kernel_;
+  ClBuffer counts_, ids_, open_triangles_;
   ClBuffer positions_, triangles_, places_, first_, pairs_, bricks_, first_brick_, masks_, open_, counters_;
   std::vector<uint32_t> first_pair_;         ///< of each block of the launch, and one more
   std::span<const uint32_t> pairs_of_host_;  ///< of the launch: ids
@@ -240,11 +343,16 @@ class OpenClVoxelizer {
 OpenClVoxelized voxelizeOpenCl(const Scene& scene, const VoxelizeOptions& options, const std::string& device,
                                const std::function<void(VoxelBlock&&)>& take,
                                const OpenClVoxelizing& tuning) {
-  requireFits(options.lattice, sceneBounds(scene));
+  requireFits(options.lattice, sceneBounds(scene));  // before a device is asked for anything
   OpenClVoxelizer voxelizer(device, scene, options, tuning);
-  voxelizeBy([&](const BlockTriangles& binned, std::span<const size_t> filled,
-                 std::span<VoxelBlock> blocks) { voxelizer.make(binned, filled, blocks); },
-             std::max(tuning.blocks_a_time, size_t{1}), scene, options, take);
+  VoxelizeOptions on_device = options;
+  on_device.memory = std::min(options.memory, voxelizer.mostListBytes());
+  VoxelizeSteps steps;
+  steps.bin = [&](const VoxelBox& blocks) { return voxelizer.bin(blocks); };
+  steps.make = [&](const BlockTriangles& binned, std::span<const size_t> filled,
+                   std::span<VoxelBlock> blocks) { voxelizer.make(binned, filled, blocks); };
+  steps.blocks_a_time = std::max(tuning.blocks_a_time, size_t{1});
+  voxelizeBy(steps, scene, on_device, take);
   return voxelizer.done();
 }
 
