@@ -246,8 +246,11 @@ void writePage(const BakeOptions& options, const BakeReport& report, const TextO
   }
 }
 
-void fillReport(const Bake& bake, BakeReport& report) {
+void fillReport(const Bake& bake, const PvsFile* bound, BakeReport& report) {
   report.cells = bake.finished();
+  for (const CellSummary& cell : report.cells) {
+    if (bound) report.bounds.push_back(findCell(*bound, cell.cell.name).triangles.size());
+  }
   report.baked_on = bake.head().device;
   report.peak_process_bytes = peakProcessBytes();
 }
@@ -317,14 +320,13 @@ void runBake(const BakeOptions& options) {
   printer.end();
 
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fillReport(bake, report);
+  fillReport(bake, bound ? &*bound : nullptr, report);
   const std::vector<WarnedCell> warned = warnedCells(report);
   if (!report.cells.empty()) sayTable(report, warned);
-  if (bound) {
-    for (const CellSummary& cell : report.cells) {
-      const uint64_t upper = findCell(*bound, cell.cell.name).triangles.size();
-      say(fmt::format("{}: {}", cell.cell.name, statesText(cell.pvs_size, upper, report.scene.triangles)));
-    }
+  for (size_t i = 0; i < report.bounds.size(); ++i) {
+    const CellSummary& cell = report.cells[i];
+    say(fmt::format("{}: {}", cell.cell.name,
+                    statesText(cell.pvs_size, report.bounds[i], report.scene.triangles)));
   }
   Steps steps;
   if (!options.report.empty()) steps.run([&] { outputs.save(reportJson(report), options.report); });

@@ -149,7 +149,7 @@ inline constexpr Param kParams[] = {
     {ParamField<float>{&BakeParams::bound, 0, param_table::kMostFloat}, "bound", "world units", "none", 6,
      kEveryMethod, ParamGroup::kHoles, "voxels of the bound",
      "a .pvs file of sightline bound: what it proves hidden is left out of the sets; kept is the side of "
-     "its voxels (docs/voxels.md)"},
+     "its voxels (docs/bounds.md)"},
 };
 
 /// Calls f(const Param&, value) for each, in the order of kParams. Params: BakeParams, perhaps const.

@@ -49,10 +49,16 @@ class BoundCommand : public ::testing::Test {
 TEST_F(BoundCommand, LimitsABakeAndIsVerified) {
   makeCity();
   expectRun(bake("plain.pvs", ""), 0, {});
-  expectRun(bake("limited.pvs", "--bound " + path("u.pvs")), 0,
-            {"box-1: ", " seen, ", " open, ", " hidden: ", "of what is not seen is proved hidden"});
+  expectRun(bake("limited.pvs",
+                 "--bound " + path("u.pvs") + " --html " + path("l.html") + " --report " + path("l.json")),
+            0, {"box-1: ", " seen, ", " open, ", " hidden: ", "of what is not seen is proved hidden"});
   const PvsFile upper = loadPvs(path("u.pvs")), plain = loadPvs(path("plain.pvs")),
                 limited = loadPvs(path("limited.pvs"));
+  const auto states = nlohmann::json::parse(textOf(path("l.json")))["cells"][0]["states"];
+  EXPECT_EQ(states["seen"], limited.cells[0].triangles.size());
+  EXPECT_EQ(states["open"], upper.cells[0].triangles.size() - limited.cells[0].triangles.size());
+  EXPECT_EQ(states["hidden"], upper.triangle_count - upper.cells[0].triangles.size());
+  EXPECT_NE(textOf(path("l.html")).find("Within the bound"), std::string::npos);
   EXPECT_EQ(upper.params.method, Method::kBound);
   EXPECT_EQ(upper.params.bound, 0.5f);
   EXPECT_EQ(limited.params.bound, 0.5f);
