@@ -286,13 +286,20 @@ void addGrowth(HtmlReport& html, const BakeReport& report, const std::vector<Cur
                sizeChart(report, curves, "seconds", [](const CurvePoint& p) { return p.seconds; })});
 }
 
-void addPictures(HtmlReport& html, const std::vector<ReportPicture>& pictures) {
+void addPictures(HtmlReport& html, const BakeReport& report, const std::vector<ReportPicture>& pictures) {
   if (pictures.empty()) return;
   html.section("Pictures");
-  html.text(
+  const SurfaceCounts& surfaces = report.scene.surfaces;
+  std::string text =
       "From outside: triangles in the set green, the view cell orange. From inside: red what is seen but not "
-      "in the set. Through holes and glass one sees what is behind; glass tints it, bluish. Doors that are "
-      "open are drawn as glass.");
+      "in the set.";
+  if (surfaces.masked != 0) text += " Through holes one sees what is behind.";
+  if (surfaces.glass != 0 || !report.see_through.empty() || !report.doors.empty()) {
+    text += " Glass tints what is behind it, bluish.";
+  }
+  if (!report.see_through.empty()) text += " What hides nothing is drawn as glass.";
+  if (!report.doors.empty()) text += " Doors that are open are drawn as glass.";
+  html.text(text);
   html.pictures(pictures);
 }
 
@@ -347,7 +354,7 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
   addStates(html, report);
   addDoors(html, report);
   addGrowth(html, report, page.curves);
-  addPictures(html, page.pictures);
+  addPictures(html, report, page.pictures);
   addStages(html, report, page.curves);
   html.section("Parameters");
   html.facts(parameterFacts(report.params));

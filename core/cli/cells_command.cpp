@@ -12,6 +12,7 @@
 #include "core/base/interrupted.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"
+#include "core/cli/free_cells.h"
 #include "core/cli/free_side_option.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
@@ -39,10 +40,12 @@ struct CellsArguments {
   std::vector<std::string> region;
   std::vector<uint64_t> count;
   GridOptions grid_options;
+  CLI::Option* free_side = nullptr;
   std::vector<std::string> path;
   std::filesystem::path walk;
   PathOptions path_options;
   std::optional<double> margin;
+  FreeCellsArguments free;
 };
 
 /// So many cells are named one by one that were left out.
@@ -96,10 +99,18 @@ std::vector<ViewCell> runGrid(const Scene& scene, const GridOptions& options, Gr
 
 std::vector<ViewCell> placeGrid(const Scene& scene, const CellsArguments& arguments) {
   GridCounts counts;
-  std::vector<ViewCell> cells = runGrid(scene, gridOptions(arguments, scene.offset), counts);
-  const std::string line = fmt::format(
-      "{} boxes: {} kept, {} met by triangles, {} with nothing below, {} too high, {} inside of solids",
-      counts.boxes, counts.kept, counts.blocked, counts.nothing_below, counts.too_high, counts.in_solid);
+  GridOptions options = gridOptions(arguments, scene.offset);
+  std::unique_ptr<FreeSpace> free;
+  if (!arguments.free.reach.empty()) {
+    free = findReached(scene, arguments.free, std::min({options.size.x, options.size.y, options.size.z}) / 8);
+    options.space = &*free->space;
+  }
+  std::vector<ViewCell> cells = runGrid(scene, options, counts);
+  const std::string line =
+      fmt::format("{} boxes: {} kept, {} met by triangles, {} with nothing below, {} too high, {}",
+                  counts.boxes, counts.kept, counts.blocked, counts.nothing_below, counts.too_high,
+                  free ? fmt::format("{} not reached", counts.not_reached)
+                       : fmt::format("{} inside of solids", counts.in_solid));
   if (cells.empty()) {
     throw Error("no free box in the grid (" + line + "); try a smaller size, another --origin" +
                 (counts.in_solid > 0 ? ", or --free-side" : ""));
@@ -183,18 +194,35 @@ std::vector<ViewCell> placeWalk(const Scene& scene, const CellsArguments& argume
 
 std::vector<ViewCell> placeCells(const Scene& scene, const CellsArguments& arguments) {
   if (!arguments.grid.empty()) return placeGrid(scene, arguments);
+  if (arguments.free.floor) {
+    return placeOnFloor(scene, arguments.free, arguments.margin, arguments.grid_options.free_side);
+  }
   return arguments.walk.empty() ? placePath(scene, arguments) : placeWalk(scene, arguments);
 }
 
 void run(const CellsArguments& arguments) {
-  if (int(arguments.grid.empty()) + int(arguments.path.empty()) + int(arguments.walk.empty()) != 2) {
-    throw Error("cells: takes one of --grid, --path and --walk (see: sightline cells --help)", kExitUsage);
+  const int ways = int(!arguments.grid.empty()) + int(!arguments.path.empty()) +
+                   int(!arguments.walk.empty()) + int(arguments.free.floor.has_value());
+  if (ways != 1) {
+    throw Error("cells: takes one of --grid, --floor, --path and --walk (see: sightline cells --help)",
+                kExitUsage);
+  }
+  if (arguments.grid.empty() && !arguments.free.floor &&
+      (!arguments.free.reach.empty() || arguments.free_side->count() > 0)) {
+    throw Error("cells: --reach and --free-side are of --grid and --floor", kExitUsage);
   }
   std::vector<std::filesystem::path> inputs(arguments.path.begin(), arguments.path.end());
   inputs.push_back(arguments.scene);
   inputs.push_back(arguments.walk);
-  requireSeparate(std::array{arguments.output}, inputs);
+  requireSeparate(std::array{arguments.output, arguments.free.picture}, inputs);
   requireNew(arguments.output, arguments.overwrite);
+  const std::filesystem::path& picture = arguments.free.picture;
+  if (!picture.empty()) {
+    if (lowerExtension(picture) != ".png") {
+      throw Error(fmt::format("{}: must end with .png", picture.string()), kExitUsage);
+    }
+    requireNew(picture, arguments.overwrite);
+  }
   const TextOutputs outputs({&arguments.output, 1});
   const Scene scene = loadScene(arguments.scene, arguments.load);
   const std::vector<ViewCell> cells = placeCells(scene, arguments);
@@ -208,6 +236,14 @@ constexpr const char* kCellsFooter =
     "below its centre, and it is not inside of something solid: at least half of the\n"
     "triangles that it sees are seen from their front (counter-clockwise), or what\n"
     "--free-side says.\n\n"
+    "--reach finds free space by voxels, whatever faces there are: what joins with a\n"
+    "place through voxels that no triangle meets. Boxes of the grid are kept where\n"
+    "that is.\n\n"
+    "Boxes of --floor stand where one walks: on voxels with --head free above, from\n"
+    "one to the next by --step at most, in parts of the floor that are as large as a\n"
+    "box, or on which one comes to stand from the places of --reach. Each covers as\n"
+    "much as it can of what others leave, and holds the eye wherever one stands\n"
+    "under it.\n\n"
     "A box that touches a wall sees, from its surface, what is behind. So sides with\n"
     "triangles near them come in, until they are --margin away; the others stay, and\n"
     "boxes meet each other there. A box of the path is left out if a side would come\n"
@@ -219,6 +255,8 @@ constexpr const char* kCellsFooter =
     "  sightline cells level.obj -o cells.json --grid 2 --region -10,0,-10 10,4,10\n"
     "  sightline cells level.obj -o cells.json --grid 2 --origin -10,0,-10 \\\n"
     "      --count 10 1 10\n"
+    "  sightline cells level.obj -o cells.json --grid 4,2,4 --reach 0,1.5,0\n"
+    "  sightline cells level.obj -o cells.json --floor 4 --least 0.75\n"
     "  sightline cells city.glb -o cells.json --width 2.5 --height 2 --length 150 \\\n"
     "      --path 0,1.5,-200 0,1.5,200 120,1.5,200\n"
     "  sightline cells city.glb -o cells.json --path points.txt\n"
@@ -248,9 +286,9 @@ void declareGrid(CLI::App& command, CellsArguments& a) {
       .add_option("--max-height", a.grid_options.max_height,
                   "Only boxes with something at most so far below them (default: any)")
       ->needs(grid);
-  declareFreeSide(command, a.grid_options.free_side,
-                  "front: keep boxes that see front faces; back: that see back faces; any: both")
-      ->needs(grid);
+  a.free_side =
+      declareFreeSide(command, a.grid_options.free_side,
+                      "front: keep boxes that see front faces; back: that see back faces; any: both");
 }
 
 void declarePath(CLI::App& command, CellsArguments& a) {
@@ -272,7 +310,8 @@ void declarePath(CLI::App& command, CellsArguments& a) {
 }  // namespace
 
 void addCellsCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("cells", "Place view cells: a grid in free space, or along a path");
+  CLI::App* command =
+      app.add_subcommand("cells", "Place view cells: a grid in free space, on the floor, or along a path");
   const auto a = std::make_shared<CellsArguments>();
   command->add_option("SCENE", a->scene, "Scene file: .obj, .gltf, .glb or .ply")->required();
   command->add_option("-o,--output", a->output, "Cells file to write (.json), or - for standard output")
@@ -283,6 +322,7 @@ void addCellsCommand(CLI::App& app) {
                       "(default: a hundredth of their smallest extent)");
   declareLoading(*command, a->load);
   declareGrid(*command, *a);
+  declareFreeCells(*command, a->free);
   declarePath(*command, *a);
   command->footer(kCellsFooter);
   command->callback([a] { run(*a); });

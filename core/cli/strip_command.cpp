@@ -43,15 +43,13 @@ struct StripArguments {
   SceneLoadOptions load;
   uint32_t rays = 0, check_rays = 1'000'000;  ///< of each cell
   uint32_t aimed = 500;                       ///< of each cell at each triangle
+  uint32_t rounds = 4;                        ///< of aimed rays at most
   bool tight = false;
   std::string device = "opencl";
   DeviceOptions device_options;
   bool spatial_splits = false;
   BakeParams params;
 };
-
-/// Rounds of aimed rays at most.
-constexpr uint32_t kMostRounds = 4;
 
 bool isSets(const std::filesystem::path& from) {
   const std::string extension = lowerExtension(from);
@@ -259,7 +257,7 @@ std::vector<bool> keptOf(const StripArguments& arguments, Viewed& viewed, std::v
   uint64_t last = arguments.aimed > 0 ? 1 : 0;
   AimedRays aimed{.seed = arguments.params.seed, .each = arguments.aimed};
   TraceStatus status("aimed rays", cells.size());
-  for (; last > 0 && aimed.round < kMostRounds && !status.stopped(); ++aimed.round) {
+  for (; last > 0 && aimed.round < arguments.rounds && !status.stopped(); ++aimed.round) {
     last = 0;
     for (SceneState& state : viewed.states) {
       for (uint32_t i = 0; i < cells.size() && !status.stopped(); ++i) {
@@ -411,10 +409,15 @@ void addStripCommand(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--aimed", a->aimed,
-                   "rays of each cell at each triangle that would go, in rounds until one finds nothing, "
-                   "four at most; what "
-                   "they meet stays; 0: none")
+                   "rays of each cell at each triangle that would go, in rounds until one finds nothing; "
+                   "what they meet stays; 0: none")
       ->transform(wholeNumber(0, 1u << 20))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--rounds", a->rounds,
+                   "rounds of aimed rays at most: more keep more of what is hardly seen")
+      ->transform(wholeNumber(1, 1u << 20))
       ->type_name("N")
       ->capture_default_str();
   command->add_flag("--tight", a->tight,

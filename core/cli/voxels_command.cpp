@@ -18,6 +18,7 @@
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
 #include "core/cli/share_line.h"
+#include "core/cli/solid_option.h"
 #include "core/cli/stop_signal.h"
 #include "core/cli/voxel_options.h"
 #include "core/formats/load_scene.h"
@@ -35,6 +36,7 @@ namespace {
 struct VoxelsArguments {
   std::filesystem::path scene, output;
   VoxelSize size;
+  SolidOption solid;
   std::string separate = "conservative";
   std::vector<std::string> attributes;
   std::string device = "cpu";
@@ -84,7 +86,26 @@ void sayLevels(const Lattice& lattice, const std::vector<VoxelLevelCounts>& leve
   }
 }
 
+/// Of what is solid, the inside too: all in memory. Blocks' triangles say what is inside, whether they are
+/// kept or not.
+void writeSolid(const VoxelsArguments& arguments, const Scene& scene, VoxelizeOptions options,
+                VoxelWriter& writer) {
+  options.with_triangles = true;
+  VoxelGrid grid;
+  grid.lattice = options.lattice;
+  voxelizeOn(arguments.device, scene, options,
+             [&](VoxelBlock&& block) { grid.blocks.push_back(std::move(block)); });
+  arguments.solid.fill(scene, grid, options.stop);
+  for (VoxelBlock& block : grid.blocks) {
+    if (arguments.without_triangles) block.triangles.clear();
+    writer.add(std::move(block));
+  }
+}
+
 void run(const VoxelsArguments& arguments) {
+  if (arguments.solid.isAsked() && (arguments.separate != "conservative" || !arguments.attributes.empty())) {
+    throw Error("voxels: --solid is of conservative voxels, without --attributes", kExitUsage);
+  }
   requireSeparate(std::array{arguments.output}, std::array{arguments.scene});
   requireNew(arguments.output, arguments.overwrite);
   const Scene scene = loadScene(arguments.scene, arguments.load);
@@ -102,7 +123,11 @@ void run(const VoxelsArguments& arguments) {
       .stop = stop.flag()};
   VoxelWriter writer(arguments.output, headOf(scene, options));
   try {
-    voxelizeOn(arguments.device, scene, options, [&](VoxelBlock&& block) { writer.add(std::move(block)); });
+    if (arguments.solid.isAsked()) {
+      writeSolid(arguments, scene, options, writer);
+    } else {
+      voxelizeOn(arguments.device, scene, options, [&](VoxelBlock&& block) { writer.add(std::move(block)); });
+    }
   } catch (const Interrupted&) {
     status.end();
     fmt::print("stopped: nothing is written\n");
@@ -123,7 +148,8 @@ constexpr const char* kVoxelsFooter =
     "one if it has a part in the level below.\n\n"
     "Examples:\n"
     "  sightline voxels city.glb -o city.slv --voxel 0.25\n"
-    "  sightline voxels statue.ply -o statue.slv --along 1024 --separate 6\n";
+    "  sightline voxels statue.ply -o statue.slv --along 1024 --separate 6\n"
+    "  sightline voxels city.glb -o city.slv --voxel 1 --solid winding --closed\n";
 
 }  // namespace
 
@@ -133,6 +159,7 @@ void addVoxelsCommand(CLI::App& app) {
   command->add_option("SCENE", a->scene, "Scene file: .obj, .gltf, .glb or .ply")->required();
   command->add_option("-o,--output", a->output, "Voxel file to write (.slv)")->required();
   a->size.declare(*command);
+  a->solid.declare(*command);
   command
       ->add_option(
           "--separate", a->separate,

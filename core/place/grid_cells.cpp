@@ -10,6 +10,7 @@
 #include "core/base/interrupted.h"
 #include "core/place/clear_box.h"
 #include "core/place/place_cells.h"
+#include "core/place/probe_solid.h"
 #include "core/scene/box_triangle.h"
 #include "core/scene/leaves_in_box.h"
 #include "core/trace/cpu_tracer.h"
@@ -30,7 +31,7 @@ constexpr double kSameStep = 1e-6;
 /// A box of this share of the size must be free: those that only touch a triangle are.
 constexpr double kTouching = 1 - 0x1p-20;
 
-enum class Verdict : uint8_t { kKept, kBlocked, kNothingBelow, kTooHigh, kInSolid };
+enum class Verdict : uint8_t { kKept, kBlocked, kNothingBelow, kTooHigh, kInSolid, kNotReached };
 
 struct CenteredBox {
   glm::dvec3 center, half_size;
@@ -60,7 +61,12 @@ struct Outcome {
 class BoxJudge {
  public:
   BoxJudge(const Scene& scene, const Bvh& bvh, const GridOptions& options, double margin)
-      : scene_(scene), bvh_(bvh), options_(options), margin_(margin), tracer_(scene, bvh) {}
+      : scene_(scene),
+        bvh_(bvh),
+        options_(options),
+        margin_(margin),
+        tracer_(scene, bvh),
+        probe_(scene, tracer_, options.free_side) {}
 
   Outcome judge(const glm::dvec3& center) const {
     const std::optional<SideInsets> insets = insetsAt(center);
@@ -70,7 +76,11 @@ class BoxJudge {
     if (options_.max_height > 0 && below.t - options_.size.y / 2 > options_.max_height) {
       return {Verdict::kTooHigh, {}};
     }
-    if (isInSolid(center)) return {Verdict::kInSolid, {}};
+    if (options_.space != nullptr) {
+      if (!isReached(center, *insets)) return {Verdict::kNotReached, {}};
+    } else if (probe_.isInSolid(center)) {
+      return {Verdict::kInSolid, {}};
+    }
     return {Verdict::kKept, *insets};
   }
 
@@ -85,11 +95,22 @@ class BoxJudge {
     return SideInsets{};
   }
 
-  bool isInSolid(const glm::dvec3& center) const {
-    if (options_.free_side == FreeSide::kAny) return false;
-    std::array<Hit, kSolidProbes> hits;
-    for (size_t i = 0; i < hits.size(); ++i) hits[i] = tracer_.trace(makeRay(center, probes_[i]));
-    return inSolid(scene_, options_.free_side, probes_, hits);
+  /// Whether a free voxel of the space has a part in the box.
+  bool isReached(const glm::dvec3& center, const SideInsets& insets) const {
+    const Lattice& lattice = options_.space->grid().lattice;
+    const double size = lattice.voxelSize();
+    const glm::dvec3 half = options_.size * 0.5;
+    const glm::ivec3 low = voxelAt(lattice, center - half + insets.low);
+    const glm::dvec3 end = (center + half - insets.high) / size;
+    const glm::ivec3 high = glm::max(low, glm::ivec3(glm::ceil(end)) - 1);
+    for (int z = low.z; z <= high.z; ++z) {
+      for (int y = low.y; y <= high.y; ++y) {
+        for (int x = low.x; x <= high.x; ++x) {
+          if (options_.space->state({x, y, z}) == VoxelState::kFree) return true;
+        }
+      }
+    }
+    return false;
   }
 
   const Scene& scene_;
@@ -97,7 +118,7 @@ class BoxJudge {
   const GridOptions& options_;
   double margin_;
   CpuTracer tracer_;
-  std::array<glm::vec3, kSolidProbes> probes_ = solidProbes();
+  SolidProbe probe_;
 };
 
 /// First step of the grid along an axis, and how many.
@@ -223,7 +244,7 @@ std::vector<ViewCell> gridCells(const Scene& scene, const Bvh& bvh, const GridOp
   const BoxJudge judge(scene, bvh, options, margin);
 
   std::vector<ViewCell> cells;
-  uint64_t tally[5] = {}, inset = 0;
+  uint64_t tally[6] = {}, inset = 0;
   std::vector<Outcome> outcomes;
   for (uint64_t begin = 0; begin < grid.boxes(); begin += outcomes.size()) {
     if (hooks.progress) hooks.progress(begin, grid.boxes());
@@ -238,7 +259,9 @@ std::vector<ViewCell> gridCells(const Scene& scene, const Bvh& bvh, const GridOp
       cells.push_back(withInsets(box, outcomes[i].insets));
     }
   }
-  if (counts != nullptr) *counts = {grid.boxes(), tally[0], tally[1], tally[2], tally[3], tally[4], inset};
+  if (counts != nullptr) {
+    *counts = {grid.boxes(), tally[0], tally[1], tally[2], tally[3], tally[4], tally[5], inset};
+  }
   return cells;
 }
 

@@ -13,6 +13,7 @@
 #include "core/path/camera_path.h"
 #include "core/scene/in_solid.h"
 #include "core/scene/scene.h"
+#include "core/voxel/voxel_space.h"
 
 namespace sightline {
 
@@ -36,6 +37,9 @@ struct GridOptions {
   /// Keep a box only if something lies at most so far below its underside; 0: however far.
   double max_height = 0;
   FreeSide free_side = FreeSide::kFront;  ///< kAny: keep boxes inside of solids, too
+  /// Of this scene's voxels: keep boxes that a free voxel has a part in, whatever faces they see. With what
+  /// reach (core/voxel/reach.h) made these are the boxes that are reached.
+  const VoxelSpace* space = nullptr;
   /// How far boxes keep from triangles, at most an eighth of the smallest size; 0: they may touch some, and
   /// then see what is behind. Not set: defaultMargin (core/place/clear_box.h).
   std::optional<double> margin;
@@ -49,6 +53,7 @@ struct GridCounts {
   uint64_t nothing_below = 0;  ///< beside or under the world
   uint64_t too_high = 0;       ///< above max_height
   uint64_t in_solid = 0;       ///< more than half of what they see are wrong faces
+  uint64_t not_reached = 0;    ///< no free voxel of the space has a part in them
   uint64_t inset = 0;          ///< of those kept: smaller than the grid's boxes, for the margin
 };
 
@@ -63,7 +68,7 @@ struct GridHooks {
 ///  - that no triangle reaches into by more than the margin (across an edge of the box: a little less),
 ///  - with something straight below their centre, within max_height,
 ///  - that are outside of solids: of rays from the centre in 64 directions that hit anything, at least half
-///    hit a face of free_side.
+///    hit a face of free_side; or, where options have a space, that are free there.
 /// A side with triangles nearer than the margin comes in by what it takes to keep that distance, at most
 /// twice the margin: a cell flush on a wall would see, from its surface, what is behind. All other sides stay
 /// on the grid, so that cells go on meeting each other, and every place that is farther than twice the margin

@@ -1,6 +1,7 @@
 #include "core/voxel/exact_sign.h"
 
 #include <cmath>
+#include <initializer_list>
 
 namespace sightline {
 namespace {

@@ -311,6 +311,11 @@ class Flood {
   bool is_outside_ = false;
 };
 
+double percentOf(uint64_t part, const SpaceCounts& counts) {
+  const uint64_t all = counts.free + counts.inner;
+  return all == 0 ? 0 : 100 * double(part) / double(all);
+}
+
 }  // namespace
 
 VoxelSpace reach(const VoxelGrid& grid, const ReachOptions& options) {
@@ -334,9 +339,11 @@ VoxelSpace reach(const VoxelGrid& grid, const ReachOptions& options) {
 }
 
 std::string reachedText(const SpaceCounts& counts) {
-  const uint64_t all = counts.free + counts.inner;
-  const double percent = all == 0 ? 0 : 100 * double(counts.free) / double(all);
-  return fmt::format("{:.1f} % of space is reached", percent);
+  return fmt::format("{:.1f} % of space is reached", percentOf(counts.free, counts));
+}
+
+std::string insideText(const SpaceCounts& counts) {
+  return fmt::format("{:.1f} % of space is inside", percentOf(counts.inner, counts));
 }
 
 }  // namespace sightline

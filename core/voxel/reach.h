@@ -36,5 +36,7 @@ VoxelSpace reach(const VoxelGrid& grid, const ReachOptions& options);
 
 /// "97.3 % of space is reached": of the box around the scene, without voxels that a triangle meets.
 std::string reachedText(const SpaceCounts& counts);
+/// "12.4 % of space is inside", of the same.
+std::string insideText(const SpaceCounts& counts);
 
 }  // namespace sightline

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "core/scene/object_of.h"
 #include "core/voxel/bin_triangles.h"
 #include "core/voxel/triangle_rows.h"
 
@@ -86,13 +87,6 @@ struct VoxelSum {
     is_met = false;
   }
 };
-
-uint32_t objectOf(const Scene& scene, uint32_t triangle) {
-  const auto after =
-      std::upper_bound(scene.objects.begin(), scene.objects.end(), triangle,
-                       [](uint32_t id, const SceneObject& o) { return id < o.first_triangle; });
-  return after == scene.objects.begin() ? 0 : uint32_t(after - scene.objects.begin()) - 1;
-}
 
 /// Gives each voxel of the block its part of a triangle, row by row: what rows have in common is cut once.
 class TriangleParts {

@@ -46,14 +46,14 @@ VoxelBox boxOf(const VoxelGrid& grid) {
   return box;
 }
 
-VoxelLookup::VoxelLookup(const VoxelGrid& grid) : grid_(grid) {
+VoxelLookup::VoxelLookup(const VoxelGrid& grid) : grid_(&grid) {
   places_.reserve(grid.blocks.size());
   for (size_t i = 0; i < grid.blocks.size(); ++i) places_.emplace(keyOf(grid.blocks[i].place), uint32_t(i));
 }
 
 const VoxelBlock* VoxelLookup::block(const glm::ivec3& place) const {
   const auto found = places_.find(keyOf(place));
-  return found == places_.end() ? nullptr : &grid_.blocks[found->second];
+  return found == places_.end() ? nullptr : &grid_->blocks[found->second];
 }
 
 bool VoxelLookup::contains(const glm::ivec3& voxel) const {

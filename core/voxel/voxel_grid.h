@@ -80,7 +80,7 @@ class VoxelLookup {
   bool contains(const glm::ivec3& voxel) const;
 
  private:
-  const VoxelGrid& grid_;
+  const VoxelGrid* grid_;
   std::unordered_map<uint64_t, uint32_t> places_;
 };
 

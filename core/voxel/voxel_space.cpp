@@ -26,29 +26,6 @@ VoxelBox blocksAround(const VoxelGrid& grid) {
   return box;
 }
 
-VoxelBox voxelsAround(const VoxelGrid& grid) {
-  const VoxelBox blocks = blocksAround(grid);
-  if (blocks.low.x > blocks.high.x) return {};
-  VoxelBox box{blocks.high * kBlockSide + (kBlockSide - 1), blocks.low * kBlockSide};
-  for (const VoxelBlock& block : grid.blocks) {
-    for (const VoxelBrick& brick : block.bricks) {
-      const glm::ivec3 low =
-          block.place * kBlockSide +
-          kBrickSide * glm::ivec3(brick.place & 7, (brick.place >> 3) & 7, brick.place >> 6);
-      if (holds(box, low) && holds(box, low + (kBrickSide - 1))) continue;
-      for (int z = 0; z < kBrickSide; ++z) {
-        for (int y = 0; y < kBrickSide; ++y) {
-          const uint64_t row = (brick.bits[size_t(z)] >> (8 * y)) & 0xff;
-          if (row == 0) continue;
-          box.low = glm::min(box.low, low + glm::ivec3(std::countr_zero(row), y, z));
-          box.high = glm::max(box.high, low + glm::ivec3(63 - std::countl_zero(row), y, z));
-        }
-      }
-    }
-  }
-  return box;
-}
-
 glm::ivec3 voxelAt(const Lattice& lattice, const glm::dvec3& place) {
   const double voxels_a_unit = std::ldexp(1.0, -lattice.exponent);
   return glm::ivec3(glm::clamp(glm::floor(place * voxels_a_unit), -0x1p31, 0x1p31 - 1));
@@ -113,7 +90,7 @@ Share VoxelSpace::innerIn(const glm::ivec3& low, int level) const {
 
 SpaceCounts VoxelSpace::counts() const {
   SpaceCounts counts;
-  const uint64_t volume = volumeOf(voxelsAround(*grid_));
+  const uint64_t volume = volumeOf(boxOf(*grid_));
   counts.surface = grid_->count();
   constexpr uint64_t kInBlock = uint64_t(kBlockSide) * kBlockSide * kBlockSide;
   for (const uint32_t inner : inner_) {
@@ -125,10 +102,54 @@ SpaceCounts VoxelSpace::counts() const {
   return counts;
 }
 
+void VoxelSpace::bitsOf(const glm::ivec3& place, BlockBits& free, BlockBits& surface) const {
+  surface.clear();
+  free.clear();
+  if (const VoxelBlock* block = lookup_.block(place)) surface.insert(block->bricks);
+  const Share inner = innerInBlock(place);
+  if (inner == Share::kAll) return;
+  if (inner == Share::kSome) packed_[inner_[indexOf(place)] - kPacked].addTo(free);
+  for (int z = 0; z < kBlockSide; ++z) {
+    for (int y = 0; y < kBlockSide; ++y) free.row(y, z) = ~(free.row(y, z) | surface.row(y, z));
+  }
+}
+
 void VoxelSpace::setInner(const glm::ivec3& block, Share share, PackedBlock&& packed) {
   uint32_t& inner = inner_[indexOf(block)];
   inner = share == Share::kNone ? kNone : share == Share::kAll ? kAll : kPacked + uint32_t(packed_.size());
   if (share == Share::kSome) packed_.push_back(std::move(packed));
+}
+
+VoxelGrid filledGrid(const VoxelSpace& space) {
+  VoxelGrid filled;
+  filled.lattice = space.grid().lattice;
+  const VoxelBox voxels = boxOf(space.grid()), blocks = space.blocks();
+  const VoxelLookup lookup(space.grid());
+  BlockBits free, surface;
+  for (int z = blocks.low.z; z <= blocks.high.z; ++z) {
+    for (int y = blocks.low.y; y <= blocks.high.y; ++y) {
+      for (int x = blocks.low.x; x <= blocks.high.x; ++x) {
+        const VoxelBlock* block = lookup.block({x, y, z});
+        if (block == nullptr && space.innerInBlock({x, y, z}) == Share::kNone) continue;
+        const glm::ivec3 low = glm::ivec3(x, y, z) * kBlockSide;
+        const VoxelBox part =
+            overlapOf({voxels.low - low, voxels.high - low}, {glm::ivec3(0), glm::ivec3(kBlockSide - 1)});
+        space.bitsOf({x, y, z}, free, surface);
+        surface.clear();
+        for (int k = part.low.z; k <= part.high.z; ++k) {
+          for (int j = part.low.y; j <= part.high.y; ++j) {
+            surface.row(j, k) = ~free.row(j, k) & rowBits(part.low.x, part.high.x);
+          }
+        }
+        VoxelBlock whole;
+        whole.place = {x, y, z};
+        whole.bricks = surface.bricks();
+        if (block != nullptr) whole.triangles = block->triangles;
+        if (!whole.bricks.empty()) filled.blocks.push_back(std::move(whole));
+      }
+    }
+  }
+  return filled;
 }
 
 }  // namespace sightline

@@ -42,6 +42,8 @@ class VoxelSpace {
   Share innerInBlock(const glm::ivec3& place) const;
   /// Of the smallest box around the surface's voxels.
   SpaceCounts counts() const;
+  /// The voxels of a block that are free, and those that a triangle meets.
+  void bitsOf(const glm::ivec3& place, BlockBits& free, BlockBits& surface) const;
 
   /// For who makes one: what is inner in a block; not for use by many threads at once.
   void setInner(const glm::ivec3& block, Share share, PackedBlock&& packed = {});
@@ -60,13 +62,14 @@ class VoxelSpace {
   size_t indexOf(const glm::ivec3& block) const;
 };
 
+/// The grid's voxels and the inner ones of the box around them, as one set; blocks keep their triangles.
+VoxelGrid filledGrid(const VoxelSpace& space);
+
 /// Blocks of a box that a space may have at most.
 inline constexpr uint64_t kMostSpaceBlocks = uint64_t(1) << 28;
 
 /// The box around the grid's blocks, in blocks; none if there are none.
 VoxelBox blocksAround(const VoxelGrid& grid);
-/// The smallest box around the grid's voxels, in voxels.
-VoxelBox voxelsAround(const VoxelGrid& grid);
 
 /// The voxel that holds a place of the scene's space, the higher one if it is on a side. Places out of range
 /// of int32 are moved to its ends.

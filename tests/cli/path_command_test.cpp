@@ -80,7 +80,8 @@ TEST(CellsCommand, HoldsAWholeWalk) {
     })) << frame;
   }
   const std::string cells_of = "cells " + where + "c.glb -o - ";
-  expectRun(cells_of + "--walk " + where + "w.json --grid 3", 2, {"takes one of --grid, --path and --walk"});
+  expectRun(cells_of + "--walk " + where + "w.json --grid 3", 2,
+            {"takes one of --grid, --floor, --path and --walk"});
   expectRun(cells_of + "--grid 3 --width 3", 2,
             {"--width: is of boxes along a --path or --walk, and neither is given"});
   expectRun(cells_of + "--walk " + where + "none.json", 1, {"none.json"});

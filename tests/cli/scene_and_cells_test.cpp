@@ -61,6 +61,45 @@ TEST(SceneCommand, SaysWhatIsWrong) {
   expectLine("scene city --triangles 1000 -o /nonexistent/x.obj", 1, "/nonexistent/x.obj");
 }
 
+TEST(CellsCommand, PlacesWhatIsReachedAndTheFloor) {
+  const Folder folder;
+  const auto scene = (folder / "city.glb").string(), cells = (folder / "cells.json").string();
+  ASSERT_EQ(runProgram("scene city --triangles 2000 -o '" + scene + "'").exit_code, 0);
+  const std::string start = "cells '" + scene + "' -o '" + cells + "' --overwrite ";
+
+  ProgramRun run = runProgram(start + "--grid 8,4,8 --max-height 1 --reach 0,1.5,0");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_NE(run.output.find("voxels of 0.5: "), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find(" % of space is reached"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find(" not reached"), std::string::npos) << run.output;
+  EXPECT_GT(loadCells(cells).size(), 50u);
+
+  run = runProgram(start + "--floor 20 --least 2 --reach 0,1.5,0 --voxel 0.5");
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+  EXPECT_NE(run.output.find(" % of it"), std::string::npos) << run.output;
+  EXPECT_GT(loadCells(cells).size(), 50u);
+  for (const ViewCell& cell : loadCells(cells)) {
+    EXPECT_LE(cell.size.x, 20);
+    EXPECT_LE(cell.size.z, 20);
+  }
+  const auto picture = (folder / "floor.png").string();
+  run = runProgram(start + "--floor 20 --least 2 --voxel 0.5 --picture '" + picture + "'");
+  EXPECT_TRUE(std::filesystem::exists(picture));
+  ASSERT_EQ(run.exit_code, 0) << run.output;
+
+  expectLine(start + "--grid 8 --reach 0,1.5,0 --voxel 0.3", 2, "take 0.25 or 0.5");
+  expectLine(start + "--grid 8 --voxel 0.5", 2, "--reach and --floor");
+  expectLine(start + "--grid 8 --reach 0,-0.01,0", 2, "triangles meet");
+  expectLine(start + "--floor 20 --reach 0,500,0 --least 50", 2, "least");
+  expectLine(start + "--floor 20 --eye 5", 2, "head");
+  expectLine(start + "--floor nan", 2, "nan");
+  expectLine(start + "--floor 20 --picture floor.jpg", 2, ".png");
+  expectLine(start + "--grid 8 --floor 8", 2, "takes one of");
+  expectLine(start + "--path 0,1,0 0,1,9 --reach 0,1.5,0", 2, "--reach");
+  expectLine(start + "--path 0,1,0 0,1,9 --free-side any", 2, "--free-side");
+  expectLine(start + "--grid 8 --least 1", 2, "--floor");
+}
+
 TEST(CellsCommand, PlacesAGridAndAPath) {
   const Folder folder;
   const auto scene = (folder / "city.glb").string(), cells = (folder / "cells.json").string();
@@ -220,8 +259,8 @@ TEST(CellsCommand, SaysWhatIsWrong) {
   const auto scene = (folder / "city.glb").string();
   ASSERT_EQ(runProgram("scene city --triangles 1000 -o '" + scene + "'").exit_code, 0);
   const std::string start = "cells '" + scene + "' -o '" + (folder / "cells.json").string() + "' ";
-  expectLine(start, 2, "one of --grid, --path and --walk");
-  expectLine(start + "--grid 4 --path 0,0,0 1,1,1", 2, "one of --grid, --path and --walk");
+  expectLine(start, 2, "one of --grid, --floor, --path and --walk");
+  expectLine(start + "--grid 4 --path 0,0,0 1,1,1", 2, "one of --grid, --floor, --path and --walk");
   expectLine(start + "--grid 4,5", 2, "x,y,z");
   expectLine(start + "--grid 4,a,5", 2, "4,a,5");
   expectLine(start + "--grid 0", 2, "positive");

@@ -44,6 +44,33 @@ TEST(VoxelsCommand, WritesVoxelsOnEveryDeviceAlike) {
             {"those of a 6-separating set", "ids of triangles, normals", "0: ", "format version 1"});
 }
 
+TEST(VoxelsCommand, FillsWhatIsSolid) {
+  const Folder folder;
+  const std::string where = (folder / "").string();
+  // A closed box of 12 triangles, 4 voxels a side and half a voxel off the lattice.
+  std::string box = "o box\n";
+  for (int i = 0; i < 8; ++i) {
+    box += std::string("v ") + ((i & 1) != 0 ? "4.5 " : "0.5 ") + ((i & 2) != 0 ? "4.5 " : "0.5 ") +
+           ((i & 4) != 0 ? "4.5\n" : "0.5\n");
+  }
+  box += "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\n";
+  const std::string open = folder.write("open.obj", box).string();
+  const std::string closed = folder.write("closed.obj", box + "f 2 4 8 6\n").string();
+  const std::string to = " -o " + where + "v.slv --overwrite --voxel 1 --solid ";
+  for (const std::string rule : {"parity", "winding", "reach"}) {
+    expectRun("voxels " + closed + to + rule + " --closed", 0, {"closed parts: 1 of 1", "125 voxels of 1"});
+    EXPECT_EQ(loadVoxels(where + "v.slv").levels.front().count(), 125u) << rule;
+    expectRun("voxels " + open + to + rule + " --closed", 1,
+              {"box is not closed", "open edge from 4.5,", "closed parts: 0 of 1"});
+    // A side of it is missing, and the way in is open.
+    expectRun("voxels " + open + to + rule, 0, {"closed parts: 0 of 1; nothing is hidden in solids"});
+  }
+  expectRun("voxels " + closed + to + "reach --reach 2.5,2.5,2.5", 0, {"100.0 % of space is reached"});
+  expectRun("voxels " + closed + to + "reach --reach 0.5,2.5,2.5", 2, {"triangles meet"});
+  expectRun("voxels " + closed + to + "parity --separate 6", 2, {"--solid is of conservative voxels"});
+  expectRun("voxels " + closed + to + "all", 2, {"all is none of parity, winding, reach"});
+}
+
 TEST(VoxelsCommand, RefusesInOneLine) {
   const Folder folder;
   const std::string where = (folder / "").string();

@@ -112,6 +112,28 @@ TEST(BakePage, PicturesComeBeforeTheStageCharts) {
   EXPECT_LT(pictures, stages);
 }
 
+TEST(BakePage, SaysOnlyWhatPicturesShow) {
+  BakeReport report = hostileReport();
+  report.scene.surfaces = {};
+  report.doors.clear();
+  report.see_through.clear();
+  BakePage page;
+  page.curves.resize(report.cells.size());
+  page.pictures.push_back({});
+  const std::string plain = bakePage(report, page).html();
+  for (const char* word : {"Through holes", "Glass tints", "drawn as glass"}) {
+    EXPECT_EQ(plain.find(word), std::string::npos) << word;
+  }
+  report.scene.surfaces.masked = 1;
+  report.doors.push_back({"door", 0, 1});
+  const std::string other = bakePage(report, page).html();
+  for (const char* sentence :
+       {"Through holes one sees what is behind.", "Glass tints what is behind it, bluish.",
+        "Doors that are open are drawn as glass."}) {
+    EXPECT_NE(other.find(sentence), std::string::npos) << sentence;
+  }
+}
+
 TEST(BakePage, CountsOneCellAsOne) {
   BakeReport report = hostileReport();
   report.cells.resize(1);

@@ -1,6 +1,7 @@
 // How many scene files of a folder load: SIGHTLINE_SCENES=FOLDER test_scene --gtest_filter='WholeFolder.*'
-// The folder is not part of the project. Files that are not whole (cut off, or without a file that they need)
-// or hold no triangles do not count; of the others 98 % must load.
+// The folder is not part of the project, and holds none of those files that validators must refuse. Files
+// that are not whole (cut off, or without a file that they need) or hold no triangles do not count; of the
+// others 98 % must load.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

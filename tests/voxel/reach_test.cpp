@@ -30,7 +30,7 @@ struct BruteSpace {
 
 BruteSpace bruteReach(const VoxelGrid& grid, const std::vector<glm::ivec3>& seeds, bool from_outside) {
   BruteSpace space;
-  space.box = voxelsAround(grid);
+  space.box = boxOf(grid);
   space.box.low -= 1;  // a layer that stands for the outside
   space.box.high += 1;
   const glm::ivec3 size = space.box.high - space.box.low + 1;
