@@ -91,7 +91,7 @@ LayerSearch::Result LayerSearch::lookFrom(size_t index, const RealBox& box) {
 // Some layers across the blocked part of the segment from `near` (the box) to `far` (the cell).
 bool LayerSearch::tryRun(Part& part, const RealBox& box, const VoxelBox& between, const glm::dvec3& from,
                          const glm::dvec3& way, double near, double far) {
-  constexpr double kShares[] = {0.5, 0.875, 0.125, 1, 0, 0.25, 0.75, 0.9375, 0.0625, 0.375, 0.625};
+  constexpr double kShares[] = {0.5, 0.875, 0.125, 1, 0, 0.25, 0.75};
   for (int axis = 0; axis < 3; ++axis) {
     if (between.low[axis] > between.high[axis]) continue;
     int tried = INT32_MIN;
