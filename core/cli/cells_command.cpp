@@ -14,6 +14,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/free_cells.h"
 #include "core/cli/free_side_option.h"
+#include "core/cli/load_options.h"
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
 #include "core/cli/points.h"

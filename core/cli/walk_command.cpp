@@ -31,6 +31,7 @@
 #include "core/picture/png.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
+#include "core/sampling/views.h"
 #include "core/scene/scene_tree.h"
 #include "core/walk/walk_page.h"
 #include "core/walk/walk_pictures.h"

@@ -11,8 +11,7 @@ namespace {
 
 constexpr int64_t kMostBlocksATime = int64_t(1) << 24;  // lists of a box of blocks, in all
 
-VoxelBox blocksOf(const Scene& scene, const Lattice& lattice) {
-  const Bounds bounds = sceneBounds(scene);
+VoxelBox blocksOf(const Bounds& bounds, const Lattice& lattice) {
   const double blocks_a_unit = std::ldexp(1.0, -lattice.exponent) / kBlockSide;
   const glm::dvec3 low = glm::dvec3(bounds.low) * blocks_a_unit,
                    high = glm::dvec3(bounds.high) * blocks_a_unit;
@@ -72,13 +71,13 @@ void voxelize(const Scene& scene, const VoxelizeOptions& options,
 
 void voxelizeBy(const VoxelizeSteps& steps, const Scene& scene, const VoxelizeOptions& options,
                 const std::function<void(VoxelBlock&&)>& take) {
-  requireFits(options.lattice, sceneBounds(scene));
-  const VoxelBox box = blocksOf(scene, options.lattice);
+  const Bounds bounds = sceneBounds(scene);
+  requireFits(options.lattice, bounds);
+  const VoxelBox box = blocksOf(bounds, options.lattice);
   const glm::ivec3 size = box.high - box.low + 1;
   const std::vector<uint64_t> pairs = countPairsOfLayers(scene, options.lattice, box);
   uint64_t all_pairs = 0, done_pairs = 0, voxels = 0;
   for (const uint64_t in_layer : pairs) all_pairs += in_layer;
-  std::vector<uint64_t> bound_pairs;
   for (int layer = 0; layer < size.z;) {
     const int layers = layersFrom(box, pairs, layer, options.memory);
     const VoxelBox part{{box.low.x, box.low.y, box.low.z + layer},

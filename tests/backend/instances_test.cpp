@@ -2,11 +2,13 @@
 // bit for bit.
 #include "core/scene/instances.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cstring>
 
+#include "core/base/error.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/contained.h"
 #include "core/scene/scene_tree.h"

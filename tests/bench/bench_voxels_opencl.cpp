@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--device", options.device)->capture_default_str();
   app.add_option("--threads", options.threads, "of the processor's voxeliser")->capture_default_str();
-  app.add_option("--runs", options.runs)->capture_default_str();
+  app.add_option("--runs", options.runs)->check(CLI::Range(1, 1000))->capture_default_str();
   app.add_option("--group", options.tuning.group, "work items a block");
   app.add_option("--blocks", options.tuning.blocks_a_time, "a launch")->capture_default_str();
   app.add_flag("--floats", options.tuning.floats);

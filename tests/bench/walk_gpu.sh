@@ -20,6 +20,26 @@ for wanted in "$@"; do
       --csv "$name-$in_flight.csv" --html "$name-$in_flight.html" || echo "$name: exit code $?"
   done
 done
+# One large cell of a street against the small ones in it, each drawn by its own set.
+"$program" cells "$name.glb" -o "$name-large.json" --walk "$name-walk.json" --length 100 --overwrite
+small=$(python3 - "$name-cells.json" "$name-large.json" "$name-street.json" <<'END'
+import json, sys
+small, large = (json.load(open(file))["cells"] for file in sys.argv[1:3])
+one = dict(max(large, key=lambda cell: max(cell["size"])), name="large")
+inside = [cell for cell in small if all(abs(a - b) <= s / 2 + 1e-3 for a, b, s in
+                                        zip(cell["center"], one["center"], one["size"]))][:4]
+json.dump({"cells": [one] + inside}, open(sys.argv[3], "w"))
+print(",".join(cell["name"] for cell in inside))
+END
+)
+"$program" bake "$name.glb" --cells "$name-street.json" -o "$name-street.pvs" --device opencl --overwrite \
+  --max-seconds "${SIGHTLINE_WALK_STREET_SECONDS:-20}" --validation-rays 0
+"$program" walk "$name.glb" --path "views:large,$small" --views 60 --pvs "$name-street.pvs" --device vulkan \
+  --methods none,vfc,hiz,pvs,pvs+vfc,pvs+hiz --trace-every 0 --report "$name-street-report.json" --html "$name-street.html"
+# What the chain of submits is worth.
+for chain in barriers semaphores; do
+  "$program" walk "$name.glb" --path "$name-walk.json" --methods chc,chc++,opti-chc++ --chain "$chain" --check none
+done
 # False pixels at odd sizes, a walk each.
 for size in 1x1 97x61 640x360 1000x1000 1279x719 1920x1080 333x777; do
   "$program" walk "$name.glb" --path "$name-walk.json" --resolution "$size" --repeats 1 --trace-every 0 --max-false 0 \

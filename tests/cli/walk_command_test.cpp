@@ -95,6 +95,37 @@ TEST_F(WalkCommandTest, ReplaysSetsAndViewsOfACell) {
                 "--methods vfc,pvs --report " + at("v.json"),
             0, {});
   EXPECT_EQ(json::parse(readText(at("v.json")))["cuts"].size(), 9u);
+  // Cells of one run, each drawn by its own set, though they overlap.
+  json overlapping = json::parse(readText(at("cells.json")));
+  json& cells = overlapping["cells"];
+  cells.erase(cells.begin() + 1, cells.end());
+  json large = cells[0];
+  large["name"] = "large";
+  large["size"][2] = 2 * double(large["size"][2]);
+  cells.push_back(large);
+  folder_.write("two.json", overlapping.dump());
+  expectRun("bake " + at("c.glb") + " --cells " + at("two.json") + " -o " + at("two.pvs") +
+                " --device cpu --n-rand 20000 --validation-rays 0",
+            0, {});
+  const std::string two = "walk " + at("c.glb") +
+                          " --device cpu --resolution 32x32 --repeats 1 --views 5 --pvs " + at("two.pvs") +
+                          " --methods none,pvs ";
+  expectRun(two + "--path views:large,walk-1 --report " + at("two-report.json") + " --html " + at("two.html"),
+            0, {});
+  const json by_cell = json::parse(readText(at("two-report.json")))["cells"];
+  ASSERT_EQ(by_cell.size(), 2u);
+  for (int i : {0, 1}) {
+    const json& cell = by_cell[size_t(i)];
+    EXPECT_EQ(cell["name"], i == 0 ? "large" : "walk-1");
+    EXPECT_EQ(cell["first_frame"], 5 * i);
+    EXPECT_EQ(cell["end_frame"], 5 * i + 5);
+    EXPECT_EQ(cell["methods"]["pvs"]["triangles"], cell["triangles"]) << "its own set";
+    EXPECT_EQ(cell["methods"]["none"]["false_pixels"], 0);
+  }
+  EXPECT_GT(by_cell[0]["triangles"], by_cell[1]["triangles"]);
+  EXPECT_NE(readText(at("two.html")).find("What the set of each cell is worth"), std::string::npos);
+  expectRun(two + "--path views:large,large", 2, {"large is named twice"});
+  expectRun(two + "--path views:", 2, {"two.pvs"});
   // Another scene's set; a camera outside.
   expectRun("scene city --triangles 2000 -o " + at("d.glb") + " --walk " + at("d.json") + " --frames 60", 0,
             {});

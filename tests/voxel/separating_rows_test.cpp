@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <map>
 #include <random>
@@ -120,10 +121,13 @@ SeparationTriangle tiedTriangle(std::mt19937_64& random) {
 }
 
 // Right: a voxel is in a triangle's set if the triangle meets one of its shifted targets.
+// SIGHTLINE_VOXEL_TRIANGLES: how many triangles are tried.
 TEST(SeparatingRows, AreTheVoxelsWhoseTargetsTheTriangleMeets) {
+  const char* wanted = std::getenv("SIGHTLINE_VOXEL_TRIANGLES");
+  const int triangles = wanted == nullptr ? 400 : std::atoi(wanted);
   std::mt19937_64 random(11);
   uint64_t in = 0, out = 0, ties = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 0; i < triangles; ++i) {
     const SeparationTriangle t = tiedTriangle(random);
     const SeparationSet all = meetingVoxels(t);
     for (const Separation separation : kBothSeparations) {
