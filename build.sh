@@ -8,14 +8,14 @@ readonly root
 readonly build="$root/build"
 
 # Compiler and build, libraries, OpenCL with PoCL (OpenCL on the processor, for machines without a GPU), Vulkan, and
-# what only the tests and bench_trace use.
+# what only the tests, bench_trace and export --format vdb use.
 readonly packages=(
   cmake g++ ninja-build pkg-config
   libcgal-dev libcli11-dev libdraco-dev libfmt-dev libglm-dev libjs-chart.js libmeshoptimizer-dev libpng-dev libtbb-dev
   libwebp-dev libxxhash-dev libzstd-dev nlohmann-json3-dev
   ocl-icd-opencl-dev opencl-clhpp-headers opencl-headers pocl-opencl-icd
   glslang-tools libvulkan-dev
-  libembree-dev libgtest-dev spirv-tools
+  libembree-dev libgtest-dev libopenvdb-dev spirv-tools
 )
 
 # Only the tests need these: Vulkan's validation layer, a Vulkan driver that traces rays on any processor (Debian 12's

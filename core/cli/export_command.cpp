@@ -12,6 +12,7 @@
 #include "core/cli/commands.h"
 #include "core/cli/device_check.h"
 #include "core/cli/doors_option.h"
+#include "core/cli/export_voxels.h"
 #include "core/cli/load_options.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/number_checks.h"
@@ -25,6 +26,7 @@
 #include "core/io/file_io.h"
 #include "core/pvs/choose_cell.h"
 #include "core/pvs/pvs_writer.h"
+#include "core/voxel/voxel_file.h"
 
 namespace sightline {
 namespace {
@@ -37,6 +39,8 @@ struct ExportOptions {
   uint32_t rays = 1'000'000;  ///< of each cell, and below: for objects
   double least = 0;
   std::string device = "opencl";
+  uint32_t level = 0;  ///< and below: for voxels
+  bool merge = false;
 };
 
 /// What cells see in terms of the scene's objects, all of them in one file.
@@ -74,7 +78,27 @@ void requireExtension(const ExportOptions& options) {
               kExitUsage);
 }
 
+/// The formats that only sets, or only voxels, have.
+void requireFormat(const ExportOptions& options, bool voxels) {
+  const std::string& format = options.format;
+  if (voxels && (format == "ids" || format == "json" || format == "objects")) {
+    throw Error(fmt::format("{}: --format {} is of sets; voxels are written as glb, obj, ply or vdb",
+                            options.pvs.string(), format),
+                kExitUsage);
+  }
+  if (!voxels && (format == "ply" || format == "vdb")) {
+    throw Error(fmt::format("{}: --format {} is of voxels (.slv)", options.pvs.string(), format), kExitUsage);
+  }
+}
+
 void runExport(const ExportOptions& options) {
+  const bool voxels = isVoxelFile(options.pvs);
+  requireFormat(options, voxels);
+  if (voxels) {
+    requireExtension(options);
+    requireSeparate(std::array{options.out}, std::array{options.pvs});
+    return exportVoxels({options.pvs, options.out, options.format, options.level, options.merge});
+  }
   const bool geometry = options.format == "obj" || options.format == "glb";
   const bool to_output = isStandardOutput(options.out);
   if (to_output && options.format == "glb") {
@@ -115,11 +139,11 @@ void runExport(const ExportOptions& options) {
 }  // namespace
 
 void addExportCommand(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("export", "Write sets for other programs");
+  CLI::App* command = app.add_subcommand("export", "Write sets, or voxels, for other programs");
   const auto options = std::make_shared<ExportOptions>();
-  command->add_option("pvs", options->pvs, "a bake, or the .part of one in work")
+  command->add_option("pvs", options->pvs, "a bake, or the .part of one in work; or voxels (.slv)")
       ->required()
-      ->type_name("OUT.pvs");
+      ->type_name("OUT.pvs|VOXELS.slv");
   command
       ->add_option("--cell", options->cell,
                    "its name, or its number from 0; not for objects, which are of all")
@@ -128,9 +152,9 @@ void addExportCommand(CLI::App& app) {
       ->add_option(
           "--format", options->format,
           "ids, obj, glb or json of one cell, or objects: what all cells see of the scene's objects, and how "
-          "much of the view each takes (docs/report.md)")
+          "much of the view each takes (docs/report.md); of voxels glb, obj or ply (their faces), or vdb")
       ->required()
-      ->check(oneOf({"ids", "obj", "glb", "json", "objects"}))
+      ->check(oneOf({"ids", "obj", "glb", "json", "objects", "ply", "vdb"}))
       ->type_name("FORMAT");
   command->add_option("-o,--output", options->out, "- is standard output, but for glb")
       ->required()
@@ -157,6 +181,17 @@ void addExportCommand(CLI::App& app) {
       ->type_name("NAME")
       ->capture_default_str()
       ->group(group);
+  const char* const of_voxels = "For voxels";
+  command->add_option("--level", options->level, "of the file's levels, 0 the finest")
+      ->transform(wholeNumber(0, 31))
+      ->type_name("N")
+      ->capture_default_str()
+      ->group(of_voxels);
+  command
+      ->add_flag(
+          "--merge", options->merge,
+          "glb, obj and ply: faces side by side as one, in each block; corners then lie on edges of others")
+      ->group(of_voxels);
   command->callback([options] { runExport(*options); });
 }
 

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/scene/scene.h"
+#include "core/scene/scene_stream.h"
 
 namespace sightline {
 
@@ -12,5 +13,9 @@ namespace sightline {
 /// Throws Error.
 void writeGlb(const Scene& scene, const std::string& name,
               const std::function<void(std::string_view)>& write);
+
+/// The same bytes of a scene that is made meanwhile.
+void streamGlb(const SceneStream& stream, const std::string& name,
+               const std::function<void(std::string_view)>& write);
 
 }  // namespace sightline

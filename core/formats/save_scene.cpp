@@ -84,6 +84,12 @@ void writeObj(const Scene& scene, const std::string& name, const WriteText& writ
   writer.flush();
 }
 
+void saveGlb(const SceneStream& stream, const std::filesystem::path& file) {
+  OutputFile output(file);
+  streamGlb(stream, file.string(), [&output](std::string_view piece) { output.write(piece); });
+  output.commit();
+}
+
 void saveScene(const Scene& scene, const std::filesystem::path& file) {
   const std::string name = file.string();
   const std::string extension = lowerExtension(file);

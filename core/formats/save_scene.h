@@ -2,6 +2,7 @@
 #include <filesystem>
 
 #include "core/scene/scene.h"
+#include "core/scene/scene_stream.h"
 
 namespace sightline {
 
@@ -16,5 +17,9 @@ namespace sightline {
 /// several, NAME/0, NAME/1, ... Writes to a temporary name and renames. A GLB holds less than 4 GiB. Throws
 /// Error.
 void saveScene(const Scene& scene, const std::filesystem::path& file);
+
+/// Writes a .glb: the bytes that saveScene writes of the same scene, which is made meanwhile and never held.
+/// The objects' names must be such that saveScene takes them. Throws Error.
+void saveGlb(const SceneStream& stream, const std::filesystem::path& file);
 
 }  // namespace sightline

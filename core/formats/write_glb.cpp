@@ -22,6 +22,10 @@ using nlohmann::json;
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kArrayBuffer = 34962, kElementArrayBuffer = 34963;
 constexpr int kNearestFilter = 9728;
 
+std::pair<json, json> asRange(const Bounds& bounds) {
+  return {json{bounds.low.x, bounds.low.y, bounds.low.z}, json{bounds.high.x, bounds.high.y, bounds.high.z}};
+}
+
 /// Smallest and largest coordinates of a run of positions, which glTF asks for.
 std::pair<json, json> positionRange(std::span<const glm::vec3> positions) {
   glm::vec3 low = positions.empty() ? glm::vec3(0) : positions.front();
@@ -30,7 +34,7 @@ std::pair<json, json> positionRange(std::span<const glm::vec3> positions) {
     low = glm::min(low, position);
     high = glm::max(high, position);
   }
-  return {json{low.x, low.y, low.z}, json{high.x, high.y, high.z}};
+  return asRange({low, high});
 }
 
 /// offset: of the scene, put back.
@@ -58,13 +62,21 @@ class GltfWriter {
       : scene_(scene),
         saved_(saved),
         positions_(saved.triangles.empty() ? scene.positions : saved.positions),
+        position_count_(positions_.size()),
         shared_positions_(saved.triangles.empty() ? scene.plainPositions() : saved.shared_positions) {}
+  /// Of a scene whose positions are not there yet: so many, within these bounds.
+  GltfWriter(const Scene& scene, const SavedRuns& saved, uint32_t positions, const Bounds& bounds)
+      : scene_(scene),
+        saved_(saved),
+        position_count_(positions),
+        shared_positions_(positions),
+        bounds_(bounds) {}
 
   /// image_bytes: of the masks' images, in order.
   json document(uint64_t triangle_bytes, const std::vector<uint64_t>& image_bytes) {
     document_ = {{"asset", {{"version", "2.0"}, {"generator", "Sightline"}}}, {"scene", 0}};
     document_["bufferViews"] = json::array();
-    addView(positions_.size() * sizeof(glm::vec3), kArrayBuffer);
+    addView(position_count_ * sizeof(glm::vec3), kArrayBuffer);
     addView(triangle_bytes, kElementArrayBuffer);
     if (!image_bytes.empty()) addView(saved_.places.size() * sizeof(glm::vec2), kArrayBuffer);
     for (const uint64_t bytes : image_bytes) addView(bytes, {});
@@ -138,7 +150,7 @@ class GltfWriter {
   }
 
   size_t addPositions(uint32_t first, uint32_t count) {
-    const auto [low, high] = positionRange(positions_.subspan(first, count));
+    const auto [low, high] = bounds_ ? asRange(*bounds_) : positionRange(positions_.subspan(first, count));
     return addAccessor({{"bufferView", 0},
                         {"componentType", kFloat},
                         {"count", count},
@@ -207,17 +219,53 @@ class GltfWriter {
   const Scene& scene_;
   const SavedRuns& saved_;
   const std::span<const glm::vec3> positions_;
+  const uint64_t position_count_;
   const uint32_t shared_positions_;
+  const std::optional<Bounds> bounds_ = {};
   json document_;
   json accessors_ = json::array(), roots_ = json::array();
   uint64_t bytes_ = 0;
   std::vector<SharedMesh> meshes_;
 };
 
+using WriteBytes = std::function<void(std::string_view)>;
+
+/// All of a file that is before its first buffer view.
+void writeHead(const json& document, const std::string& name, const WriteBytes& write) {
+  std::string text = document.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const uint64_t bin_bytes = document["buffers"][0]["byteLength"];  // a multiple of 4
+  const uint64_t total = 12 + 8 + text.size() + 8 + bin_bytes;
+  if (total > 0xffffffffull) {
+    throw Error(
+        fmt::format("{}: needs {} bytes, but a GLB holds less than 4 GiB; write .obj instead", name, total));
+  }
+  const uint32_t header[5] = {0x46546c67, 2, uint32_t(total), uint32_t(text.size()), 0x4e4f534a};
+  const uint32_t bin_header[2] = {uint32_t(bin_bytes), 0x004e4942};
+  write({reinterpret_cast<const char*>(header), sizeof(header)});
+  write(text);
+  write({reinterpret_cast<const char*>(bin_header), sizeof(bin_header)});
+}
+
+template <typename T>
+std::string_view bytesOf(std::span<const T> values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size_bytes()};
+}
+
 }  // namespace
 
-void writeGlb(const Scene& scene, const std::string& name,
-              const std::function<void(std::string_view)>& write) {
+void streamGlb(const SceneStream& stream, const std::string& name, const WriteBytes& write) {
+  Scene shell;
+  shell.objects = stream.objects;
+  const SavedRuns saved = splitIntoRuns(shell);
+  const uint64_t triangle_bytes = uint64_t(stream.triangleCount()) * sizeof(glm::uvec3);
+  writeHead(GltfWriter(shell, saved, stream.vertices, stream.bounds).document(triangle_bytes, {}), name,
+            write);
+  stream.positions([&](std::span<const glm::vec3> some) { write(bytesOf(some)); });
+  stream.triangles([&](std::span<const glm::uvec3> some) { write(bytesOf(some)); });
+}
+
+void writeGlb(const Scene& scene, const std::string& name, const WriteBytes& write) {
   checkWritable(scene, name);
   if (scene.hasInstances() && !scene.surfaces.empty()) return writeGlb(flatten(scene), name, write);
   const SavedRuns saved = splitIntoRuns(scene);
@@ -231,23 +279,10 @@ void writeGlb(const Scene& scene, const std::string& name,
     images.back().resize((images.back().size() + 3) / 4 * 4, 0);
   }
   const uint64_t triangle_bytes = scene.triangles.size() * sizeof(glm::uvec3);
-  const json document = GltfWriter(scene, saved).document(triangle_bytes, image_bytes);
-  std::string text = document.dump();
-  text.resize((text.size() + 3) / 4 * 4, ' ');
-  const uint64_t bin_bytes = document["buffers"][0]["byteLength"];  // a multiple of 4
-  const uint64_t total = 12 + 8 + text.size() + 8 + bin_bytes;
-  if (total > 0xffffffffull) {
-    throw Error(
-        fmt::format("{}: needs {} bytes, but a GLB holds less than 4 GiB; write .obj instead", name, total));
-  }
-  const uint32_t header[5] = {0x46546c67, 2, uint32_t(total), uint32_t(text.size()), 0x4e4f534a};
-  const uint32_t bin_header[2] = {uint32_t(bin_bytes), 0x004e4942};
+  writeHead(GltfWriter(scene, saved).document(triangle_bytes, image_bytes), name, write);
   const auto writeBytes = [&](const void* bytes, uint64_t size) {
     write({static_cast<const char*>(bytes), size});
   };
-  writeBytes(header, sizeof(header));
-  write(text);
-  writeBytes(bin_header, sizeof(bin_header));
   writeBytes(positions.data(), positions.size() * sizeof(glm::vec3));
   if (!scene.hasInstances()) {
     writeBytes((masked ? saved.triangles : scene.triangles).data(), triangle_bytes);

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/generate/generator_random.h"
+#include "core/generate/rim.h"
 
 namespace sightline {
 namespace {
@@ -100,8 +101,12 @@ void shutters(MeshBuilder& mesh, Cell h, uint32_t slats, float room) {
     mesh.box({x0 + width - stile, h.y0, 0.005f}, {x0 + width, h.y1, 0.045f});
     const float a = x0 + stile, b = x0 + width - stile;
     for (uint32_t i = 0; i < slats; ++i) {
-      const float y = h.y0 + rise * float(i);
-      mesh.quad({a, y, 0.04f}, {b, y, 0.04f}, {b, y + rise * 0.9f, 0.01f}, {a, y + rise * 0.9f, 0.01f});
+      const float y = h.y0 + rise * float(i), top = y + rise * 0.9f;
+      if (mesh.closed()) {
+        mesh.board({{{a, y, 0.04f}, {b, y, 0.04f}, {b, top, 0.01f}, {a, top, 0.01f}}}, {0, 0, -0.004f});
+        continue;
+      }
+      mesh.quad({a, y, 0.04f}, {b, y, 0.04f}, {b, top, 0.01f}, {a, top, 0.01f});
     }
   }
 }
@@ -146,8 +151,23 @@ void windowExtras(MeshBuilder& mesh, const Details& d, Cell cell, Cell hole, flo
   if (d.slats > 0) shutters(mesh, hole, d.slats, wall);
 }
 
-void facade(MeshBuilder& mesh, const Facade& f, const Style& style, uint32_t level) {
+/// Of a facade that is a part of a solid: it ends in vertices that the facades beside it share, from below
+/// up, and says in which it ends below and above, from the left to the right.
+struct FacadeSeams {
+  const Seam &left, &right;
+  Seam &bottom, &top;
+};
+
+/// seams: where the facade is a part of a solid.
+void facade(MeshBuilder& mesh, const Facade& f, const Style& style, uint32_t level,
+            const FacadeSeams* seams = nullptr) {
   const Details d = detailsAt(level, f.street, style);
+  if (!d.bands && seams != nullptr) {
+    closeBetween(mesh, seams->left, seams->right);
+    seams->bottom = {seams->left.front(), seams->right.front()};
+    seams->top = {seams->left.back(), seams->right.back()};
+    return;
+  }
   if (!d.bands) {
     mesh.quad({0, 0, 0}, {f.width, 0, 0}, {f.width, f.height, 0}, {0, f.height, 0});
     return;
@@ -155,9 +175,17 @@ void facade(MeshBuilder& mesh, const Facade& f, const Style& style, uint32_t lev
   const float pitch = style.window_pitch * (f.street ? 1.0f : 1.7f);
   const uint32_t columns = d.windows ? std::max(1u, uint32_t(f.width / pitch)) : 1;
   const float cw = f.width / float(columns), ch = f.height / float(f.floors);
-  const uint32_t grid = uint32_t(mesh.vertexCount());
+  std::vector<uint32_t> grid;
   for (uint32_t j = 0; j <= f.floors; ++j) {
-    for (uint32_t i = 0; i <= columns; ++i) mesh.vertex({cw * float(i), ch * float(j), 0});
+    for (uint32_t i = 0; i <= columns; ++i) {
+      const bool shared = seams != nullptr && (i == 0 || i == columns);
+      grid.push_back(shared ? (i == 0 ? seams->left : seams->right)[j]
+                            : mesh.vertex({cw * float(i), ch * float(j), 0}));
+    }
+  }
+  if (seams != nullptr) {
+    seams->bottom.assign(grid.begin(), grid.begin() + columns + 1);
+    seams->top.assign(grid.end() - columns - 1, grid.end());
   }
   const float margin = d.windows ? (1 - style.window_width) / 2 : 0.06f;
   for (uint32_t j = 0; j < f.floors; ++j) {
@@ -167,8 +195,8 @@ void facade(MeshBuilder& mesh, const Facade& f, const Style& style, uint32_t lev
       const float side = cw * (shop ? margin * 0.5f : margin);
       const Cell hole{cell.x0 + side, cell.y0 + ch * (shop ? 0.04f : style.window_low), cell.x1 - side,
                       cell.y0 + ch * style.window_high};
-      const uint32_t a = grid + j * (columns + 1) + i;
-      const uint32_t corners[4] = {a, a + 1, a + columns + 2, a + columns + 1};
+      const uint32_t* a = &grid[j * (columns + 1) + i];
+      const uint32_t corners[4] = {a[0], a[1], a[columns + 2], a[columns + 1]};
       recessedPane(mesh, corners, hole, style.recess);
       if (!d.windows) continue;
       Details own = d;
@@ -212,6 +240,57 @@ void walls(MeshBuilder& mesh, const BuildingSpec& spec, float w, float d, uint32
   }
 }
 
+/// The rims below and above of walls that are a part of a solid.
+struct WallRims {
+  Rim bottom, top;
+};
+
+/// As walls(), with the vertices of edges shared.
+WallRims closedWalls(MeshBuilder& mesh, const BuildingSpec& spec, float w, float d, uint32_t floors,
+                     bool ground_floor, const Style& style, uint32_t level) {
+  const Frame base = mesh.frame;
+  const glm::vec3 starts[4] = {{0, 0, d}, {w, 0, d}, {w, 0, 0}, {0, 0, 0}};
+  const float height = spec.floor_height * float(floors);
+  const auto isStreet = [&](uint32_t side) { return (spec.street_sides >> side & 1) != 0; };
+  std::array<Seam, 4> corners;
+  for (uint32_t side = 0; side < 4; ++side) {
+    const bool fine = detailsAt(level, isStreet(side), style).bands ||
+                      detailsAt(level, isStreet((side + 3) & 3), style).bands;
+    const uint32_t rows = fine ? floors : 1;
+    for (uint32_t j = 0; j <= rows; ++j) {
+      const float y = j == rows ? height : height / float(rows) * float(j);
+      corners[side].push_back(mesh.vertex(starts[side] + glm::vec3(0, y, 0)));
+    }
+  }
+  WallRims rims;
+  for (uint32_t side = 0; side < 4; ++side) {
+    mesh.frame = base.at(starts[side], 0.25f * float(side));
+    const FacadeSeams seams = {corners[side], corners[(side + 1) & 3], rims.bottom.sides[side],
+                               rims.top.sides[side]};
+    facade(mesh, {side & 1 ? d : w, height, floors, isStreet(side), ground_floor}, style, level, &seams);
+  }
+  mesh.frame = base;
+  return rims;
+}
+
+/// What closes the walls below a flat roof, but for the middle: the rim of that.
+Rim closedParapet(MeshBuilder& mesh, Rim top, float w, float d, float y, uint32_t level) {
+  if (level < 5) return top;
+  constexpr float kWide = 0.3f, kHigh = 0.7f;
+  const auto ring = [&](float inset, float height) {
+    const uint32_t first = mesh.vertex({inset, height, d - inset});
+    mesh.vertex({w - inset, height, d - inset});
+    mesh.vertex({w - inset, height, inset});
+    mesh.vertex({inset, height, inset});
+    return rimOf({first, first + 1, first + 2, first + 3});
+  };
+  for (const Rim& next : {ring(0, y + kHigh), ring(kWide, y + kHigh), ring(kWide, y)}) {
+    closeBetween(mesh, top, next);
+    top = next;
+  }
+  return top;
+}
+
 void flatRoof(MeshBuilder& mesh, float w, float d, float y, uint32_t level) {
   if (level < 5) {
     mesh.quad({0, y, 0}, {0, y, d}, {w, y, d}, {w, y, 0});
@@ -238,9 +317,57 @@ void flatRoof(MeshBuilder& mesh, float w, float d, float y, uint32_t level) {
   mesh.quad(first + 12, first + 13, first + 14, first + 15);
 }
 
-/// Two slopes in courses of tiles, and the gables.
+/// Two slopes in courses of tiles: how many of these, and tiles across.
+struct Tiles {
+  uint32_t courses, across;
+  float rise, lift;
+
+  Tiles(float d, uint32_t level)
+      : courses(level < 5 ? 1 : std::min(60u, 4 * (level - 4))),
+        across(level < 9 ? 1 : std::min(120u, 6 * (level - 8))),
+        rise(d * 0.35f),
+        // Each course starts with a riser: steps down a slope without a slit between them.
+        lift(courses > 1 ? 0.03f : 0.0f) {}
+
+  uint32_t rows() const { return 2 * courses - 1; }
+  /// side: 1 or -1, of the slope; i along it, j = 0 .. rows() up.
+  glm::vec3 point(float w, float d, float y, float side, uint32_t i, uint32_t j) const {
+    const float s = float((j + 1) / 2) / float(courses), along = float(i) / float(across);
+    const float step = j > 0 && j % 2 == 0 ? lift : 0;
+    return {side > 0 ? w * along : w * (1 - along), y + rise * s + step, d / 2 + side * (d / 2) * (1 - s)};
+  }
+};
+
+/// Slopes and gables that go on from the walls.
+void closedGableRoof(MeshBuilder& mesh, const Rim& walls, float w, float d, float y, uint32_t level) {
+  const Tiles tiles(d, level);
+  std::array<std::vector<Seam>, 2> slopes;  // rows from the first above the eaves on
+  for (size_t slope = 0; slope < 2; ++slope) {
+    for (uint32_t j = 1; j <= tiles.rows(); ++j) {
+      Seam row;
+      for (uint32_t i = 0; i <= tiles.across; ++i) {
+        const bool shared = slope == 1 && j == tiles.rows();  // the ridge
+        row.push_back(shared ? slopes[0].back()[tiles.across - i]
+                             : mesh.vertex(tiles.point(w, d, y, slope == 0 ? 1 : -1, i, j)));
+      }
+      closeBetween(mesh, row, j == 1 ? walls.sides[2 * slope] : slopes[slope].back());
+      slopes[slope].push_back(std::move(row));
+    }
+  }
+  for (size_t gable = 0; gable < 2; ++gable) {
+    // Along the wall's upper edge, up the slope that begins at its end, down the other; its middle sees all.
+    const std::vector<Seam>&up = slopes[1 - gable], &down = slopes[gable];
+    Seam polygon = walls.sides[1 + 2 * gable];
+    for (const Seam& row : up) polygon.push_back(row.front());
+    for (size_t j = down.size() - 1; j-- > 0;) polygon.push_back(down[j].back());
+    closeFan(mesh, mesh.vertex({gable == 0 ? w : 0, y + 0.25f * tiles.rise, d / 2}), polygon);
+  }
+}
+
+/// Two slopes and the gables.
 void gableRoof(MeshBuilder& mesh, float w, float d, float y, uint32_t level) {
-  const float rise = d * 0.35f;
+  const Tiles tiles(d, level);
+  const float rise = tiles.rise;
   const uint32_t gable = mesh.vertex({0, y, 0});
   mesh.vertex({0, y, d});
   mesh.vertex({0, y + rise, d / 2});
@@ -249,17 +376,9 @@ void gableRoof(MeshBuilder& mesh, float w, float d, float y, uint32_t level) {
   mesh.vertex({w, y, 0});
   mesh.vertex({w, y + rise, d / 2});
   mesh.triangle(gable + 3, gable + 4, gable + 5);
-  const uint32_t courses = level < 5 ? 1 : std::min(60u, 4 * (level - 4));
-  const uint32_t across = level < 9 ? 1 : std::min(120u, 6 * (level - 8));
-  // Each course starts with a riser: steps down a slope without a slit between them.
-  const float lift = courses > 1 ? 0.03f : 0.0f;
   for (const float side : {1.0f, -1.0f}) {
-    mesh.sheet(across, 2 * courses - 1, false, [&](uint32_t i, uint32_t j) {
-      const float s = float((j + 1) / 2) / float(courses), along = float(i) / float(across);
-      const float step = j > 0 && j % 2 == 0 ? lift : 0;
-      return glm::vec3(side > 0 ? w * along : w * (1 - along), y + rise * s + step,
-                       d / 2 + side * (d / 2) * (1 - s));
-    });
+    mesh.sheet(tiles.across, tiles.rows(), false,
+               [&](uint32_t i, uint32_t j) { return tiles.point(w, d, y, side, i, j); });
   }
 }
 
@@ -289,12 +408,37 @@ void roofClutter(MeshBuilder& mesh, float w, float d, float y, uint32_t level, G
   mesh.frame = base;
 }
 
+/// Walls, roof, and a smaller storey on it where the style has one, as one solid.
+void closedBuilding(MeshBuilder& mesh, const BuildingSpec& spec, const Style& style, uint32_t level,
+                    GeneratorRandom& random) {
+  float w = spec.width, d = spec.depth;
+  const uint32_t low_floors = style.setback ? spec.floors * 2 / 3 : spec.floors;
+  WallRims rims = closedWalls(mesh, spec, w, d, low_floors, true, style, level);
+  closeCap(mesh, rims.bottom, mesh.vertex({w / 2, 0, d / 2}), true);
+  float y = spec.floor_height * float(low_floors);
+  if (style.gable) return closedGableRoof(mesh, rims.top, w, d, y, level);
+  Rim roof = closedParapet(mesh, rims.top, w, d, y, level);
+  if (style.setback) {
+    const float inset = std::min(w, d) * random.uniform(0.12f, 0.22f);
+    w -= 2 * inset;
+    d -= 2 * inset;
+    mesh.frame = spec.frame.at({inset, y, inset});
+    rims = closedWalls(mesh, spec, w, d, spec.floors - low_floors, false, style, level);
+    closeBetween(mesh, roof, rims.bottom);
+    y = spec.floor_height * float(spec.floors - low_floors);
+    roof = closedParapet(mesh, rims.top, w, d, y, level);
+  }
+  closeCap(mesh, roof, mesh.vertex({w / 2, y, d / 2}));
+  roofClutter(mesh, w, d, y, level, random);
+}
+
 }  // namespace
 
 void makeBuilding(MeshBuilder& mesh, const BuildingSpec& spec, uint32_t level) {
   GeneratorRandom random(spec.seed, 0xb01d);
   const Style style = drawStyle(random, spec);
   mesh.frame = spec.frame;
+  if (mesh.closed()) return closedBuilding(mesh, spec, style, level, random);
   float w = spec.width, d = spec.depth;
   const uint32_t low_floors = style.setback ? spec.floors * 2 / 3 : spec.floors;
   walls(mesh, spec, w, d, low_floors, true, style, level);

@@ -22,7 +22,8 @@ inline constexpr float kBuildingOverhang = 1.2f;
 inline constexpr uint32_t kBuildingLevels = 40;
 
 /// Level 0 is a box; then floors, windows, ledges, frames, balconies, shutters turn up; the last levels add
-/// slats, bars and roof tiles.
+/// slats, bars and roof tiles. Where mesh.closed(), walls and roof are one solid, and all that is on them are
+/// solids that touch it.
 void makeBuilding(MeshBuilder& mesh, const BuildingSpec& spec, uint32_t level);
 
 }  // namespace sightline

@@ -12,6 +12,7 @@
 
 #include "core/generate/building.h"
 #include "core/generate/generator_random.h"
+#include "core/generate/rim.h"
 #include "core/generate/scene_generators.h"
 #include "core/generate/street_props.h"
 #include "core/generate/walk_plan.h"
@@ -21,6 +22,7 @@ namespace {
 
 constexpr float kCityKerb = 0.15f;
 constexpr float kPavement = 3.6f;
+constexpr float kRoadDepth = 1;  // where it is solid
 constexpr uint32_t kLotsAlong = 3;
 
 /// A street's extent across it, and of the blocks behind it, along one axis.
@@ -72,6 +74,11 @@ void addRoad(std::vector<ScenePart>& parts, const CityLayout& city) {
                      const uint32_t n = 2 * x.blocks() * std::max(1u, level);
                      const float margin = 30;
                      const float w = x.end() - x.start() + 2 * margin, d = z.end() - z.start() + 2 * margin;
+                     if (mesh.closed()) {
+                       closedBlock(mesh, {x.start() - margin, -kRoadDepth, z.start() - margin},
+                                   {x.end() + margin, 0, z.end() + margin}, n, n);
+                       return;
+                     }
                      mesh.patch({x.start() - margin, 0, z.end() + margin}, {w, 0, 0}, {0, 0, -d}, n, n);
                    },
                    16});
@@ -80,10 +87,11 @@ void addRoad(std::vector<ScenePart>& parts, const CityLayout& city) {
 ScenePart pavement(const std::string& name, glm::vec3 low, glm::vec3 high) {
   return {name,
           [low, high](MeshBuilder& mesh, uint32_t level) {
-            mesh.box(low, high, kNoLowY | kNoHighY);
             const glm::vec3 size = high - low;
             const uint32_t nu = std::max(1u, level * uint32_t(size.x / 8));
             const uint32_t nv = std::max(1u, level * uint32_t(size.z / 8));
+            if (mesh.closed()) return closedBlock(mesh, low, high, nu, nv);
+            mesh.box(low, high, kNoLowY | kNoHighY);
             mesh.patch({low.x, high.y, high.z}, {size.x, 0, 0}, {0, 0, -size.z}, nu, nv);
           },
           12};

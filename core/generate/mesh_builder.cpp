@@ -63,7 +63,7 @@ uint32_t MeshBuilder::vertex(glm::vec3 p, glm::vec2 place) {
 void MeshBuilder::triangle(uint32_t a, uint32_t b, uint32_t c) {
   if (!counting_) {
     triangles_.push_back({a, b, c});
-    if (alpha_) matters_.push_back(matter_);
+    if (options_.alpha) matters_.push_back(matter_);
   }
   count(0, 1);
 }
@@ -81,6 +81,18 @@ void MeshBuilder::quad(glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d) {
   quad(first, first + 1, first + 2, first + 3);
 }
 
+void MeshBuilder::board(const std::array<glm::vec3, 4>& front, glm::vec3 to_back) {
+  const uint32_t first = uint32_t(size_.vertices), back = first + 4;
+  for (const glm::vec3& corner : front) vertex(corner);
+  for (const glm::vec3& corner : front) vertex(corner + to_back);
+  quad(first, first + 1, first + 2, first + 3);
+  quad(back + 3, back + 2, back + 1, back);
+  for (uint32_t i = 0; i < 4; ++i) {
+    const uint32_t j = (i + 1) & 3;
+    quad(first + j, first + i, back + i, back + j);
+  }
+}
+
 void MeshBuilder::box(glm::vec3 low, glm::vec3 high, uint32_t leave_out) {
   // Corner i: bit 0 x, bit 1 y, bit 2 z.
   static constexpr uint8_t kFaces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4},
@@ -90,7 +102,7 @@ void MeshBuilder::box(glm::vec3 low, glm::vec3 high, uint32_t leave_out) {
     vertex({i & 1 ? high.x : low.x, i & 2 ? high.y : low.y, i & 4 ? high.z : low.z});
   }
   for (uint32_t f = 0; f < 6; ++f) {
-    if (leave_out >> f & 1) continue;
+    if ((leave_out >> f & 1) != 0 && !options_.closed) continue;
     quad(first + kFaces[f][0], first + kFaces[f][1], first + kFaces[f][2], first + kFaces[f][3]);
   }
 }

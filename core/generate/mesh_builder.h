@@ -45,6 +45,12 @@ enum class Matter : uint8_t {
   kLeaf   ///< a card with a picture of leaves, whose rest is holes
 };
 
+/// What a scene is asked to be made of.
+struct MeshOptions {
+  bool alpha = false;   ///< shapes may be of panes and leaves
+  bool closed = false;  ///< shapes that stand on or lean against something have the faces there, too
+};
+
 /// How many triangles of each matter, and vertices.
 struct MeshSize {
   uint64_t vertices = 0;                ///< in all
@@ -65,16 +71,16 @@ struct LathePoint {
 class MeshBuilder {
  public:
   enum class Mode { kStore, kCount };
-  /// alpha: shapes may be of panes and leaves.
-  explicit MeshBuilder(Mode mode = Mode::kStore, bool alpha = false)
-      : counting_(mode == Mode::kCount), alpha_(alpha) {}
+  explicit MeshBuilder(Mode mode = Mode::kStore, MeshOptions options = {})
+      : counting_(mode == Mode::kCount), options_(options) {}
 
   Frame frame;
 
   /// Following triangles are of this matter, if alpha is asked for.
-  void use(Matter matter) { matter_ = alpha_ ? matter : Matter::kSolid; }
+  void use(Matter matter) { matter_ = options_.alpha ? matter : Matter::kSolid; }
   /// Whether panes and leaves are asked for.
-  bool alpha() const { return alpha_; }
+  bool alpha() const { return options_.alpha; }
+  bool closed() const { return options_.closed; }
 
   /// place: of a leaf's, in its picture, 0..1 from the upper left corner.
   uint32_t vertex(glm::vec3 p, glm::vec2 place = glm::vec2(0));
@@ -83,7 +89,10 @@ class MeshBuilder {
   /// Of leaves: the whole picture, its lower edge from a to b.
   void quad(glm::vec3 a, glm::vec3 b, glm::vec3 c, glm::vec3 d);
 
-  /// Axis-aligned in the frame; low < high on every axis. leave_out: BoxFaces.
+  /// A board: of the four corners of its front, and as thick as from these to its back.
+  void board(const std::array<glm::vec3, 4>& front, glm::vec3 to_back);
+  /// Axis-aligned in the frame; low < high on every axis. leave_out: BoxFaces, of no effect where closed() is
+  /// asked for.
   void box(glm::vec3 low, glm::vec3 high, uint32_t leave_out = 0);
   /// nu by nv quads over corner + [0, 1] u + [0, 1] v; faces u x v.
   void patch(glm::vec3 corner, glm::vec3 u, glm::vec3 v, uint32_t nu, uint32_t nv);
@@ -117,7 +126,7 @@ class MeshBuilder {
   void count(uint64_t vertices, uint64_t triangles);
 
   bool counting_;
-  bool alpha_;
+  MeshOptions options_;
   Matter matter_ = Matter::kSolid;
   MeshSize size_;
   std::vector<glm::vec3> positions_;

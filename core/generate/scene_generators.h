@@ -27,6 +27,11 @@ std::vector<ViewCell> canyonCells(uint64_t triangles, uint64_t seed);
 RepeatedScene repeatedCity(uint64_t triangles, uint64_t seed, uint32_t kinds);
 RepeatedScene repeatedPlant(uint64_t triangles, uint64_t seed, uint32_t kinds);
 
+SceneStream scanStream(uint64_t triangles, uint64_t seed, bool holes,
+                       const std::function<void(uint32_t vertices, uint32_t of)>& measured);
+std::vector<ViewCell> scanCells();
+CameraPath scanWalk(uint32_t frames);
+
 std::vector<ScenePart> plantParts(uint64_t triangles, uint64_t seed);
 std::vector<ViewCell> plantCells(uint64_t triangles, uint64_t seed);
 std::vector<ScenePart> bistroParts(uint64_t triangles, uint64_t seed);

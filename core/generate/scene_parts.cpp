@@ -22,17 +22,18 @@ constexpr std::array<std::pair<Matter, const char*>, 3> kMatters = {
     {{Matter::kSolid, ""}, {Matter::kPane, "-panes"}, {Matter::kLeaf, "-leaves"}}};
 
 /// Of one copy.
-MeshSize sizeOf(const ScenePart& part, uint32_t level, bool alpha) {
-  MeshBuilder counter(MeshBuilder::Mode::kCount, alpha);
+MeshSize sizeOf(const ScenePart& part, uint32_t level, const MeshOptions& options) {
+  MeshBuilder counter(MeshBuilder::Mode::kCount, options);
   part.make(counter, level);
   return counter.size();
 }
 
 /// Sizes of all parts at one level (or their highest, where that is less).
-std::vector<MeshSize> sizesAt(const std::vector<ScenePart>& parts, uint32_t level, bool alpha) {
+std::vector<MeshSize> sizesAt(const std::vector<ScenePart>& parts, uint32_t level,
+                              const MeshOptions& options) {
   std::vector<MeshSize> sizes(parts.size());
   tbb::parallel_for(size_t(0), parts.size(), [&](size_t i) {
-    sizes[i] = sizeOf(parts[i], std::min(level, parts[i].max_level), alpha);
+    sizes[i] = sizeOf(parts[i], std::min(level, parts[i].max_level), options);
   });
   return sizes;
 }
@@ -54,19 +55,20 @@ struct Plan {
   std::vector<MeshSize> sizes;
 };
 
-Plan planLevels(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed, bool alpha) {
+Plan planLevels(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed,
+                const MeshOptions& options) {
   uint32_t highest = 0;
   for (const ScenePart& part : parts) highest = std::max(highest, part.max_level);
 
   uint32_t level = 0;
-  std::vector<MeshSize> sizes = sizesAt(parts, 0, alpha);
+  std::vector<MeshSize> sizes = sizesAt(parts, 0, options);
   uint64_t total = totalTriangles(parts, sizes);
   if (total > triangles) {
     throw Error("generated scene: the coarsest has " + std::to_string(total) + " triangles, more than the " +
                 std::to_string(triangles) + " asked for");
   }
   while (level < highest) {
-    std::vector<MeshSize> finer = sizesAt(parts, level + 1, alpha);
+    std::vector<MeshSize> finer = sizesAt(parts, level + 1, options);
     const uint64_t finer_total = totalTriangles(parts, finer);
     if (finer_total > triangles) break;
     sizes = std::move(finer);
@@ -85,7 +87,7 @@ Plan planLevels(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_
   std::vector<std::optional<MeshSize>> next(parts.size());
   const auto lookAhead = [&](size_t i) {
     next[i].reset();
-    if (plan.levels[i] < parts[i].max_level) next[i] = sizeOf(parts[i], plan.levels[i] + 1, alpha);
+    if (plan.levels[i] < parts[i].max_level) next[i] = sizeOf(parts[i], plan.levels[i] + 1, options);
   };
   tbb::parallel_for(size_t(0), parts.size(), lookAhead);
   for (bool raised = true; raised;) {
@@ -160,7 +162,7 @@ void placePart(const MeshBuilder& mesh, const MeshSize& start, const MeshSize& a
 }
 
 /// All parts at the levels of the plan, once each.
-Scene makeParts(const std::vector<ScenePart>& parts, const Plan& plan, bool alpha) {
+Scene makeParts(const std::vector<ScenePart>& parts, const Plan& plan, const MeshOptions& options) {
   const std::vector<MeshSize> starts = startsOf(plan.sizes);
   const MeshSize& all = starts.back();
   Scene scene;
@@ -173,7 +175,7 @@ Scene makeParts(const std::vector<ScenePart>& parts, const Plan& plan, bool alph
   for (size_t i = 0; i < parts.size(); ++i) {
     addObjects(parts[i].name, plan.sizes[i], scene, uint32_t(starts[i].allTriangles()));
   }
-  tbb::enumerable_thread_specific<MeshBuilder> builders(MeshBuilder::Mode::kStore, alpha);
+  tbb::enumerable_thread_specific<MeshBuilder> builders(MeshBuilder::Mode::kStore, options);
   tbb::parallel_for(size_t(0), parts.size(), [&](size_t i) {
     MeshBuilder& mesh = builders.local();
     mesh.clear();
@@ -185,11 +187,12 @@ Scene makeParts(const std::vector<ScenePart>& parts, const Plan& plan, bool alph
 
 }  // namespace
 
-Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed, bool alpha) {
-  return makeParts(parts, planLevels(parts, triangles, seed, alpha), alpha);
+Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed,
+                    const MeshOptions& options) {
+  return makeParts(parts, planLevels(parts, triangles, seed, options), options);
 }
 
-Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed) {
+Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed, const MeshOptions& options) {
   std::vector<ScenePart>& parts = repeated.parts;
   std::vector<size_t> ends;  // of the modules' parts
   const size_t plain_parts = parts.size();
@@ -200,9 +203,9 @@ Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed)
     }
     ends.push_back(parts.size());
   }
-  const Plan plan = planLevels(parts, triangles, seed, false);
+  const Plan plan = planLevels(parts, triangles, seed, options);
   const std::vector<MeshSize> starts = startsOf(plan.sizes);
-  Scene scene = makeParts(parts, plan, false);
+  Scene scene = makeParts(parts, plan, options);
   MeshSize start = starts[plain_parts];
   uint64_t next_id = start.allTriangles();
   std::erase_if(scene.objects, [&](const SceneObject& o) { return o.first_triangle >= next_id; });

@@ -40,14 +40,15 @@ struct RepeatedScene {
 /// levels allow, never more: first all at the highest common level, then single ones, in an order drawn from
 /// seed, one level higher for as long as they fit. Parts without triangles are left out.
 /// Throws Error when even level 0 is more than `triangles`.
-/// alpha: with panes of glass and leaves with holes, where parts have them. Of such a part the triangles come
-/// in the order of Matter, each as an object: "NAME", "NAME-panes", "NAME-leaves"; the vertices of all leaves
-/// are the scene's last.
+/// options.alpha: with panes of glass and leaves with holes, where parts have them. Of such a part the
+/// triangles come in the order of Matter, each as an object: "NAME", "NAME-panes", "NAME-leaves"; the
+/// vertices of all leaves are the scene's last.
 Scene assembleScene(const std::vector<ScenePart>& parts, uint64_t triangles, uint64_t seed,
-                    bool alpha = false);
+                    const MeshOptions& options = {});
 
 /// The same of a scene with modules: each of their places counts, is an object, and an instance of the scene,
 /// behind the parts.
-Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed);
+Scene assembleModules(RepeatedScene repeated, uint64_t triangles, uint64_t seed,
+                      const MeshOptions& options = {});
 
 }  // namespace sightline

@@ -99,8 +99,9 @@ PictureCamera lookAt(const Box& box, double azimuth, double elevation, double as
 }
 
 /// Green samples of a coarse picture; a camera that sees the cell's centre counts half as much again.
-double scoreCamera(const TraceRays& trace, const PictureCamera& camera, const std::optional<float>& cut_height,
-                   const glm::dvec3& cell_center, std::span<const uint8_t> member) {
+double scoreCamera(const TraceRays& trace, const PictureCamera& camera,
+                   const std::optional<float>& cut_height, const glm::dvec3& cell_center,
+                   std::span<const uint8_t> member) {
   std::vector<Ray> rays;
   for (uint32_t i = 0; i < kTrialWidth * kTrialHeight; ++i) {
     const double x = (i % kTrialWidth + 0.5) / kTrialWidth,
@@ -136,6 +137,12 @@ Ray cutRay(const glm::dvec3& origin, const glm::dvec3& direction, const std::opt
   if (!cut_height || origin.y <= *cut_height) return makeRay(origin, direction);
   if (direction.y >= 0) return makeRay(origin, {});
   return makeRay(origin + direction * ((*cut_height - origin.y) / direction.y), direction);
+}
+
+OutsideView placeWholeView(const Bounds& bounds, const PictureOptions& options) {
+  constexpr double kAzimuth = 0.6 * std::numbers::pi / 4, kElevation = 38 * std::numbers::pi / 180;
+  const Box box{glm::dvec3(bounds.low), glm::dvec3(bounds.high)};
+  return {lookAt(box, kAzimuth, kElevation, double(options.width) / options.height), std::nullopt};
 }
 
 OutsideView placeOutsideView(const TraceRays& trace, const Scene& scene, const CellPvs& pvs,

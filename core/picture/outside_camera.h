@@ -35,4 +35,7 @@ Ray cutRay(const glm::dvec3& origin, const glm::dvec3& direction, const std::opt
 OutsideView placeOutsideView(const TraceRays& trace, const Scene& scene, const CellPvs& pvs,
                              std::span<const uint8_t> member, const PictureOptions& options);
 
+/// The camera that shows all of these bounds, along none of their sides.
+OutsideView placeWholeView(const Bounds& bounds, const PictureOptions& options);
+
 }  // namespace sightline

@@ -45,9 +45,18 @@ struct Picture {
 /// The view cell and what lies around it, obliquely from above, from the side that shows most of the PVS:
 /// triangles of the PVS green, the rest grey, the cell as an orange box, fainter where something hides it.
 /// 2 x 2 samples a pixel; y is up. Through the holes of masks one sees what is behind, and through glass,
-/// which tints it: bluish green where it is in the PVS, bluish grey where not. Throws Error.
+/// which tints it: bluish green where it is in the PVS, bluish grey where not. With `upper`, the same cell's
+/// upper bound, what is not in the PVS has two colours: ochre where the bound leaves it open, dark grey where
+/// it is not in the bound, so proved hidden. Throws Error.
 Picture renderOutside(const TraceRays& trace, const Scene& scene, const CellPvs& pvs,
-                      const PictureOptions& options = {}, const TraceGlass& glass = {});
+                      const PictureOptions& options = {}, const TraceGlass& glass = {},
+                      const CellPvs* upper = nullptr);
+
+/// A scene whole, obliquely from above, each triangle in its colour (linear light). options.cut has no
+/// effect. Throws Error.
+Picture renderWhole(const TraceRays& trace, const Scene& scene,
+                    const std::function<glm::vec3(uint32_t triangle)>& color,
+                    const PictureOptions& options = {});
 
 /// What is seen from the cell, on one sheet of three panoramas: the cell's centre above, two points of its
 /// surface below. A box looks all around (360 by 180 degrees), a flat cell along its normal (180 by 90).

@@ -13,6 +13,8 @@ namespace sightline {
 /// Colours of the pictures, linear light.
 inline constexpr glm::vec3 kVisibleColor{0.10f, 0.50f, 0.16f};
 inline constexpr glm::vec3 kHiddenColor{0.50f, 0.51f, 0.53f};
+inline constexpr glm::vec3 kOpenColor{0.72f, 0.50f, 0.06f};
+inline constexpr glm::vec3 kProvedHiddenColor{0.17f, 0.18f, 0.21f};
 inline constexpr glm::vec3 kVisibleGlassColor{0.05f, 0.52f, 0.44f};
 inline constexpr glm::vec3 kHiddenGlassColor{0.33f, 0.42f, 0.56f};
 inline constexpr glm::vec3 kCellColor{1.0f, 0.33f, 0.0f};

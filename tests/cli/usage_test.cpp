@@ -72,7 +72,8 @@ TEST(Usage, NamesAnUnknownValueAndTheNearest) {
   expectUsage("picture s.obj x.pvs --cell 0 -o p.png --view insde", {"did you mean inside?"});
   expectUsage("picture s.obj x.pvs --cell 0 -o p.png --device vulkn", {"did you mean vulkan?"});
   expectUsage("export x.pvs --cell 0 -o x --format jsn", {"did you mean json?"});
-  expectUsage("scene ctiy -o x.obj", {"ctiy is none of city, canyon, plant, bistro; did you mean city?"});
+  expectUsage("scene ctiy -o x.obj",
+              {"ctiy is none of city, canyon, plant, bistro, scan; did you mean city?"});
   expectUsage("cells s.obj -o c.json --grid 4 --free-side bcak", {"did you mean back?"});
   expectUsageWithoutMeaning(bake + "--method best", {"best is none of gvs++"});
 }

@@ -228,6 +228,32 @@ TEST(OutsidePicture, ShowsTheSetGreenTheRestGreyAndTheCell) {
   EXPECT_EQ(countRed(picture.image), 0u);
 }
 
+/// Each half of the floor is open once, and once proved hidden.
+TEST(OutsidePicture, TellsWhatIsOpenFromWhatIsProvedHidden) {
+  const OpenPlace place;
+  const BruteForce trace(place.scene);
+  const PictureOptions options = sized(160, 120);
+  const PictureCamera camera =
+      placeOutsideView(trace, place.scene, place.pvs, membership(place.scene, place.pvs.triangles), options)
+          .camera;
+  for (const uint32_t open : {0u, 1u}) {
+    CellPvs upper = place.pvs;
+    upper.triangles = {open, 2, 3};
+    const Picture picture = renderOutside(trace, place.scene, place.pvs, options, {}, &upper);
+    EXPECT_TRUE(hasColor(isGreen, picture.image, placeOf(camera, {0, 0.5, 0})));
+    for (const glm::dvec3& point : {glm::dvec3(0, 0, 6.5), {0, 0, -6.5}}) {
+      const std::vector<Ray> down = {makeRay(glm::vec3(point) + glm::vec3(0, 1, 0), {0, -1, 0})};
+      std::vector<Hit> hits(1);
+      trace(down, hits);
+      const auto isDark = [](Rgb pixel) { return isGrey(pixel) && pixel.green < 150; };
+      EXPECT_EQ(bool(hasColor(isOrange, picture.image, placeOf(camera, point))), hits[0].triangle == open)
+          << point.z;
+      EXPECT_EQ(bool(hasColor(isDark, picture.image, placeOf(camera, point))), hits[0].triangle != open)
+          << point.z;
+    }
+  }
+}
+
 TEST(OutsidePicture, KeepsTheWholeCellAndSetInThePicture) {
   const OpenPlace place;
   const BruteForce trace(place.scene);

@@ -140,7 +140,8 @@ TEST(GenerateScene, IsTheSameFromEveryCompiler) {
   const std::map<std::string, uint64_t> hashes = {{"city", 3692417572581192500u},
                                                   {"bistro", 10932308476013250591u},
                                                   {"plant", 1329510042050154231u},
-                                                  {"canyon", 9614594509822377744u}};
+                                                  {"canyon", 9614594509822377744u},
+                                                  {"scan", 2070552896505335797u}};
   for (const GeneratedSceneInfo& info : generatedScenes())
     EXPECT_EQ(hashScene(generateScene(info.name, 300'000, 1)), hashes.at(info.name)) << info.name;
 }

@@ -46,7 +46,7 @@ class GeneratedAlpha : public testing::TestWithParam<std::tuple<const char*, uin
 
 TEST_P(GeneratedAlpha, ComesBackFromItsFile) {
   const auto [name, triangles] = GetParam();
-  const Scene scene = generateScene(name, triangles, 3, true);
+  const Scene scene = generateScene(name, triangles, 3, {.alpha = true});
   checkScene(scene);
   const SurfaceCounts counts = countSurfaces(scene);
   EXPECT_GT(counts.masked, 0u);
@@ -67,7 +67,7 @@ TEST_P(GeneratedAlpha, ComesBackFromItsFile) {
 
 TEST_P(GeneratedAlpha, HasOneMatterAnObject) {
   const auto [name, triangles] = GetParam();
-  const Scene scene = generateScene(name, triangles, 3, true);
+  const Scene scene = generateScene(name, triangles, 3, {.alpha = true});
   for (const SceneObject& object : scene.objects) {
     const uint32_t wanted = object.name.ends_with("-panes")    ? kSurfaceGlass
                             : object.name.ends_with("-leaves") ? kSurfaceMasked
@@ -86,13 +86,13 @@ INSTANTIATE_TEST_SUITE_P(Scenes, GeneratedAlpha,
                          });
 
 TEST(GeneratedAlphaErrors, OfScenesWithoutLeavesAndPanes) {
-  EXPECT_EQ(errorOf([] { generateScene("plant", 20'000, 1, true); }),
+  EXPECT_EQ(errorOf([] { generateScene("plant", 20'000, 1, {.alpha = true}); }),
             "the scene 'plant' has neither leaves nor panes: city and bistro have");
 }
 
 /// A twig holds on a part of its card, in one piece with its lower edge.
 TEST(LeafMask, IsATwig) {
-  const Scene scene = generateScene("bistro", 20'000, 1, true);
+  const Scene scene = generateScene("bistro", 20'000, 1, {.alpha = true});
   ASSERT_EQ(scene.surfaces.masks.size(), 1u);
   const uvec4 size = scene.surfaces.masks[0].size_wrap_first;
   std::vector<bool> holds(size_t(size.x) * size.y);
