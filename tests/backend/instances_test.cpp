@@ -3,13 +3,11 @@
 #include "core/scene/instances.h"
 
 #include <fmt/format.h>
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <bit>
 #include <cstring>
 
-#include "core/base/error.h"
 #include "core/base/error.h"
 #include "core/scene/check_scene.h"
 #include "core/scene/contained.h"
