@@ -1,11 +1,13 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "core/cell/view_cell.h"
 #include "core/generate/scene_parts.h"
 #include "core/path/camera_path.h"
+#include "core/scene/scene_stream.h"
 
 namespace sightline {
 

@@ -1,6 +1,9 @@
 // export and picture of a voxel file, as a user runs them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
+
 #include "core/formats/load_scene.h"
 #include "core/voxel/voxel_faces.h"
 #include "core/voxel/voxel_file.h"
@@ -9,6 +12,9 @@
 
 namespace sightline {
 namespace {
+
+using test::ProgramRun;
+using test::runProgram;
 
 class VoxelOutputs : public testing::Test {
  protected:

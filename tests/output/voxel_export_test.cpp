@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <set>
 
@@ -45,7 +46,7 @@ std::multiset<std::array<std::array<double, 3>, 3>> trianglesOfScene(const Scene
       const glm::dvec3 p = glm::dvec3(scene.corners(id)[k]) + scene.offset;
       places[k] = {p.x, p.y, p.z};
     }
-    std::ranges::rotate(places, std::ranges::min_element(places));
+    std::rotate(places.begin(), std::min_element(places.begin(), places.end()), places.end());
     all.insert(places);
   }
   return all;
