@@ -1,5 +1,7 @@
 #include "core/api/bake.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -63,9 +65,41 @@ OpenSet bakeOpen(Device& device, const Scene& scene, uint32_t index, const BakeP
   return open;
 }
 
+/// The triangles that the bound leaves out for the cell of that name.
+std::vector<uint32_t> hiddenBy(const PvsFile& bound, const ViewCell& cell) {
+  const auto same = std::ranges::find(bound.cells, cell.name, [](const CellPvs& c) { return c.cell.name; });
+  std::vector<uint32_t> hidden;
+  auto next = same->triangles.begin();
+  for (uint32_t id = 0; id < bound.triangle_count; ++id) {
+    if (next != same->triangles.end() && *next == id) {
+      ++next;
+    } else {
+      hidden.push_back(id);
+    }
+  }
+  return hidden;
+}
+
 }  // namespace
 
-CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& events) {
+void requireBound(const PvsFile& bound, const PvsFile& inputs, const std::filesystem::path& file) {
+  const auto require = [&](bool good, const std::string& line) {
+    if (!good) throw Error(file.string() + ": " + line, kExitUsage);
+  };
+  require(bound.params.method == Method::kBound, "is no bound: make one with sightline bound");
+  require(bound.scene_hash == inputs.scene_hash && bound.triangle_count == inputs.triangle_count,
+          "is the bound of another scene, or of another state of it");
+  require(inputs.doors.empty(), "bounds are with the doors closed: bake without --doors, or without --bound");
+  require(bound.see_through == inputs.see_through,
+          "other objects hide nothing there: give bound and bake the same --see-through");
+  for (const ViewCell& cell : inputs.planned) {
+    const auto same = std::ranges::find(bound.cells, cell.name, [](const CellPvs& c) { return c.cell.name; });
+    require(same != bound.cells.end() && same->cell == cell,
+            fmt::format("has no cell {} in this place: make the bound with the same cells", cell.name));
+  }
+}
+
+CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& events, const PvsFile* bound) {
   const float hole = inputs.params.smallest_hole;
   Device& device = session.parts().device(inputs.params.method, hole);
   std::shared_ptr<Session> open;
@@ -74,10 +108,12 @@ CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& e
     options.see_through.clear();  // as the session's scene is already
     open = std::make_shared<Session>(seenThrough(session.scene(), inputs.doors), options);
   }
-  return [&, open, hole](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
+  return [&, open, hole, bound](const ViewCell& cell, uint32_t index, const ProgressCallback& progress) {
     BakeTrace trace;
-    CellPvs pvs = bakeCell(device, session.scene(), cell, index, inputs.params,
-                           {progress, events.stop, events.grown ? &trace : nullptr});
+    const std::vector<uint32_t> hidden = bound ? hiddenBy(*bound, cell) : std::vector<uint32_t>();
+    BakeHooks hooks{progress, events.stop, events.grown ? &trace : nullptr};
+    hooks.hidden = hidden;
+    CellPvs pvs = bakeCell(device, session.scene(), cell, index, inputs.params, hooks);
     if (events.leaks && hole == 0) {
       events.leaks(index, findLeaks(device, session.scene(), pvs, leakWidth(cell)));
     }
@@ -100,8 +136,8 @@ std::string deviceText(Session& session) {
   return info.id + ", " + info.name;
 }
 
-bool runBake(Session& session, Bake& bake, const BakeEvents& events) {
-  const CellBaker baker = cellBaker(session, bake.head(), events);
+bool runBake(Session& session, Bake& bake, const BakeEvents& events, const PvsFile* bound) {
+  const CellBaker baker = cellBaker(session, bake.head(), events, bound);
   return bake.run(deviceText(session), baker, events);
 }
 

@@ -13,14 +13,19 @@ namespace sightline {
 PvsFile bakeInputs(Session& session, std::span<const ViewCell> cells, const BakeParams& params,
                    const BakeContent& content);
 
-/// Bakes single cells of these inputs on the session's device, which it opens. Session, inputs and events
-/// must outlive it.
-CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& events);
+/// Bakes single cells of these inputs on the session's device, which it opens. Session, inputs, events and
+/// bound must outlive it. bound: of requireBound; what it proves hidden is left out of the sets.
+CellBaker cellBaker(Session& session, const PvsFile& inputs, const BakeEvents& events,
+                    const PvsFile* bound = nullptr);
+
+/// Throws Error unless `bound`, read from `file`, is one (method bound) for all cells of these inputs, in
+/// which as much hides nothing.
+void requireBound(const PvsFile& bound, const PvsFile& inputs, const std::filesystem::path& file);
 
 /// "cpu, Intel Xeon ...": the session's device, as .pvs files name it.
 std::string deviceText(Session& session);
 
 /// Bakes what `bake`, of bakeInputs, still lacks. As Bake::run.
-bool runBake(Session& session, Bake& bake, const BakeEvents& events);
+bool runBake(Session& session, Bake& bake, const BakeEvents& events, const PvsFile* bound = nullptr);
 
 }  // namespace sightline

@@ -232,6 +232,21 @@ void addLeaks(HtmlReport& html, const BakeReport& report) {
   if (!table.rows.empty()) html.table(table);
 }
 
+/// What is seen, what is proved hidden, and what is neither.
+void addStates(HtmlReport& html, const BakeReport& report) {
+  if (report.bounds.empty()) return;
+  ReportTable table{.caption = "Within the bound",
+                    .columns = {"cell", "seen", "open", "proved hidden", "of what is not seen"}};
+  for (size_t i = 0; i < report.cells.size(); ++i) {
+    const uint64_t seen = report.cells[i].pvs_size, hidden = report.scene.triangles - report.bounds[i];
+    table.rows.push_back(
+        {report.cells[i].cell.name, std::to_string(seen), std::to_string(report.bounds[i] - seen),
+         std::to_string(hidden),
+         shareText(double(hidden) / double(std::max<uint64_t>(1, report.scene.triangles - seen)))});
+  }
+  html.table(table);
+}
+
 /// What the doors' opening adds to each cell's set.
 void addDoors(HtmlReport& html, const BakeReport& report) {
   if (report.doors.empty()) return;
@@ -336,6 +351,7 @@ HtmlReport bakePage(const BakeReport& report, const BakePage& page) {
       (report.params.target_error > 0 ? " Error at most: the same of wrong pixels." : ""));
   addWarnings(html, report);
   addLeaks(html, report);
+  addStates(html, report);
   addDoors(html, report);
   addGrowth(html, report, page.curves);
   addPictures(html, report, page.pictures);

@@ -106,6 +106,11 @@ std::string reportJson(const BakeReport& report) {
     json["warnings"] = toJson(warningsOf(report, i));
     addCellStatistics(json, cell, report.scene.triangles);
     json["leaks"] = i < report.leaks.size() ? toJson(report.leaks[i]) : Json(nullptr);
+    if (i < report.bounds.size()) {
+      json["states"] = {{"seen", cell.pvs_size},
+                        {"open", report.bounds[i] - cell.pvs_size},
+                        {"hidden", report.scene.triangles - report.bounds[i]}};
+    }
     cells.push_back(json);
   }
   const Json json = {{"sightline", report.version},

@@ -54,8 +54,9 @@ struct BakeReport {
   std::vector<CellSummary> cells;                  ///< finished, in order
   std::vector<std::vector<CellWarning>> warnings;  ///< checkCells of all planned cells; empty: not checked
   std::vector<std::optional<Leaks>> leaks;         ///< of `cells`, as far as this run baked them and looked
-  std::vector<NamedTriangles> see_through;         ///< of the bake, too
-  std::vector<NamedTriangles> doors;               ///< of the bake
+  std::vector<uint64_t> bounds;             ///< of `cells`: triangles not proved hidden; empty: no bound
+  std::vector<NamedTriangles> see_through;  ///< of the bake, too
+  std::vector<NamedTriangles> doors;        ///< of the bake
   uint64_t planned_cells = 0;
   uint64_t resumed_cells = 0;       ///< of `cells`: baked by an earlier run
   double seconds = 0;               ///< of this run: loading, tree, cells

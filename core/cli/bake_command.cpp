@@ -3,6 +3,7 @@
 #include <array>
 #include <chrono>
 #include <exception>
+#include <optional>
 
 #include "core/api/bake_steps.h"
 #include "core/api/session_parts.h"
@@ -14,6 +15,7 @@
 #include "core/base/error.h"
 #include "core/base/text.h"
 #include "core/cli/bake_options.h"
+#include "core/cli/bound_states.h"
 #include "core/cli/cell_warnings.h"
 #include "core/cli/command_line.h"
 #include "core/cli/commands.h"
@@ -45,7 +47,7 @@ BakeReport startReport(const BakeOptions& options, const Scene& scene, const Bak
   report.witnesses = options.witnesses;
   report.repair = options.load.repair;
   report.ignored_extensions = options.load.ignored_extensions;
-  report.params = options.params;
+  report.params = bake.head().params;
   report.doors = bake.head().doors;
   report.see_through = bake.head().see_through;
   report.planned_cells = bake.head().planned.size();
@@ -126,7 +128,7 @@ void warnOfCells(const BakeOptions& options, Session& session, const Bake& bake,
 }
 
 /// Bakes what is missing, with progress, and keeps how the sets grew for the page. Returns the exit code.
-int bakeCells(Session& session, Bake& bake, BakePage& page, BakeReport& report,
+int bakeCells(Session& session, Bake& bake, const PvsFile* bound, BakePage& page, BakeReport& report,
               CellWarningPrinter& warnings) {
   if (!bake.partProblem().empty()) {
     say(fmt::format("{}: cut off or damaged after {} ({}); the rest is baked again", bake.partFile().string(),
@@ -160,7 +162,7 @@ int bakeCells(Session& session, Bake& bake, BakePage& page, BakeReport& report,
     if (!leaks.empty()) say(fmt::format("{}: {}", pvs.cell.name, leaks));
   };
   try {
-    if (runBake(session, bake, events)) return 0;
+    if (runBake(session, bake, events, bound)) return 0;
   } catch (...) {
     printer.breakLine();
     sayKept(bake, "failed");
@@ -244,8 +246,11 @@ void writePage(const BakeOptions& options, const BakeReport& report, const TextO
   }
 }
 
-void fillReport(const Bake& bake, BakeReport& report) {
+void fillReport(const Bake& bake, const PvsFile* bound, BakeReport& report) {
   report.cells = bake.finished();
+  for (const CellSummary& cell : report.cells) {
+    if (bound) report.bounds.push_back(findCell(*bound, cell.cell.name).triangles.size());
+  }
   report.baked_on = bake.head().device;
   report.peak_process_bytes = peakProcessBytes();
 }
@@ -273,7 +278,7 @@ void runBake(const BakeOptions& options) {
   const std::array reports = {options.report, options.html, options.csv};
   requireSeparate(std::array{options.out, partFileOf(options.out), options.report, options.html, options.csv,
                              options.pictures},
-                  std::array{options.scene, options.cells});
+                  std::array{options.scene, options.cells, options.bound});
   if (!options.pictures.empty()) makeFolder(options.pictures);
   const TextOutputs outputs(reports);
   Scene loaded = loadScene(options.scene, options.load);
@@ -282,8 +287,15 @@ void runBake(const BakeOptions& options) {
   const Scene& scene = session.scene();
   const BakeContent content(options.witnesses ? Witnesses::kKeep : Witnesses::kDrop,
                             findObjects(scene, options.doors, "--doors"));
-  Bake bake(bakeInputs(session, loadCells(options.cells), options.params, content), options.out,
-            options.overwrite);
+  std::optional<PvsFile> bound;
+  BakeParams params = options.params;
+  if (!options.bound.empty()) {
+    bound = loadPvs(options.bound);
+    params.bound = bound->params.bound;
+  }
+  PvsFile inputs = bakeInputs(session, loadCells(options.cells), params, content);
+  if (bound) requireBound(*bound, inputs, options.bound);
+  Bake bake(std::move(inputs), options.out, options.overwrite);
   sayDoors(bake.head().doors);
   say(fmt::format("{}: {} triangles, {}; {}", options.scene.string(), scene.triangleCount(),
                   counted(scene.objects.size(), "object"), counted(bake.head().planned.size(), "cell")));
@@ -303,13 +315,19 @@ void runBake(const BakeOptions& options) {
   }
   CellWarningPrinter printer;
   warnOfCells(options, session, bake, report, printer);
-  if (!bake.complete()) exit_code = bakeCells(session, bake, page, report, printer);
+  if (!bake.complete())
+    exit_code = bakeCells(session, bake, bound ? &*bound : nullptr, page, report, printer);
   printer.end();
 
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  fillReport(bake, report);
+  fillReport(bake, bound ? &*bound : nullptr, report);
   const std::vector<WarnedCell> warned = warnedCells(report);
   if (!report.cells.empty()) sayTable(report, warned);
+  for (size_t i = 0; i < report.bounds.size(); ++i) {
+    const CellSummary& cell = report.cells[i];
+    say(fmt::format("{}: {}", cell.cell.name,
+                    statesText(cell.pvs_size, report.bounds[i], report.scene.triangles)));
+  }
   Steps steps;
   if (!options.report.empty()) steps.run([&] { outputs.save(reportJson(report), options.report); });
   if (exit_code == 0 && !options.pictures.empty()) {

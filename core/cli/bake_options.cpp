@@ -160,6 +160,7 @@ void declareOptions(CLI::App& command, BakeOptions& options) {
                   "objects that are seen but hide nothing, by name as above: the sets hold wherever they are")
       ->allow_extra_args(false)
       ->type_name("PATTERN");
+  command.add_option("--bound", options.bound, paramOf("bound").help)->type_name("UPPER.pvs");
   command.add_flag("--witnesses", options.witnesses, "keep a ray for each triangle that hits it first");
   declareLoading(command, options.load);
   command.add_flag("--overwrite", options.overwrite, "replace a bake with other inputs");

@@ -21,6 +21,7 @@ struct BakeOptions {
   DeviceOptions device_options;
   BakeParams params;
   SceneLoadOptions load;
+  std::filesystem::path bound;              ///< empty: none
   std::vector<std::string> doors, see_through;  ///< patterns of names
   bool witnesses = false, spatial_splits = false, overwrite = false;
   bool strict_cells = false;              ///< a warning about a cell is an error

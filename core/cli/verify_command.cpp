@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <memory>
 
+#include "core/api/bake_steps.h"
 #include "core/bake/require_scene.h"
 #include "core/base/error.h"
 #include "core/base/text.h"
+#include "core/cli/bound_states.h"
 #include "core/cli/commands.h"
 #include "core/cli/doors_option.h"
 #include "core/cli/load_options.h"
@@ -19,13 +21,14 @@
 #include "core/io/file_io.h"
 #include "core/pvs/pvs_writer.h"
 #include "core/scene/scene_tree.h"
+#include "core/verify/bound_leaks.h"
 #include "core/verify/verify.h"
 
 namespace sightline {
 namespace {
 
 struct VerifyCommand {
-  std::filesystem::path scene, pvs, output, report;
+  std::filesystem::path scene, pvs, output, report, bound;
   VerifyOptions options;
   uint64_t max_disproved = 0;
   double min_proven = 0.9999;
@@ -34,15 +37,16 @@ struct VerifyCommand {
   DoorState doors = DoorState::kClosed;
 };
 
-std::string reportText(const VerifyCommand& command, const PvsFile& pvs,
-                       const std::vector<CellProofs>& cells) {
-  const Json json = {
+std::string reportText(const VerifyCommand& command, const PvsFile& pvs, const std::vector<CellProofs>& cells,
+                       const std::vector<BoundLeaks>& leaks) {
+  Json json = {
       {"sightline", SL_VERSION},
       {"scene",
        {{"name", pvs.scene_name}, {"hash", hashText(pvs.scene_hash)}, {"triangles", pvs.triangle_count}}},
       {"device", pvs.device},
       {"rounding_steps", command.options.rounding.steps},
       {"cells", verifyJson(cells)}};
+  if (!command.bound.empty()) json["bound"] = boundLeaksJson(leaks);
   return jsonText(json);
 }
 
@@ -60,6 +64,23 @@ void writeBetter(const VerifyCommand& command, PvsFile& pvs, PvsFile& baked,
   if (removed == 0) return;
   fmt::print("{}: {} {} left out\n", command.output.string(), counted(removed, "disproved triangle"),
              removed == 1 ? "is" : "are");
+}
+
+/// What of the sets is not in their bounds. With better witnesses, where there are.
+std::vector<BoundLeaks> leaksOf(const VerifyCommand& command, const Judge& judge, const Scene& scene,
+                                const PvsFile& pvs) {
+  const PvsFile bound = loadPvs(command.bound);
+  requireBound(bound, pvs, command.bound);
+  const BoundScene voxels = makeBoundScene(scene, {.lattice = latticeOf(double(bound.params.bound))});
+  std::vector<BoundLeaks> leaks;
+  for (const CellPvs& cell : pvs.cells) {
+    leaks.push_back(findBoundLeaks(judge, voxels, cell, findCell(bound, cell.cell.name).triangles));
+    fmt::print("{}: {}\n", cell.cell.name,
+               statesText(cell.triangles.size(), findCell(bound, cell.cell.name).triangles.size(),
+                          pvs.triangle_count));
+  }
+  std::fputs(boundLeaksText(leaks).c_str(), stdout);
+  return leaks;
 }
 
 /// Says whether the result is past the limits.
@@ -84,7 +105,8 @@ void run(const VerifyCommand& command) {
   if (command.doors == DoorState::kOpen && !command.output.empty()) {
     throw Error("--output: better sets can be written with the doors closed only", kExitUsage);
   }
-  requireSeparate(std::array{command.output, command.report}, std::array{command.scene, command.pvs});
+  requireSeparate(std::array{command.output, command.report},
+                  std::array{command.scene, command.pvs, command.bound});
   if (!command.output.empty()) {
     requireNew(command.output, command.overwrite);
     OutputFile probe(command.output);  // fail before the work, not after it
@@ -103,9 +125,13 @@ void run(const VerifyCommand& command) {
   std::vector<CellProofs> cells;
   for (CellPvs& cell : pvs.cells) cells.push_back(verifyCell(judge, scene, cell, command.options));
   std::fputs(verifyTable(cells).c_str(), stdout);
-  if (!command.report.empty()) outputs.save(reportText(command, pvs, cells), command.report);
+  std::vector<BoundLeaks> leaks;
+  if (!command.bound.empty()) leaks = leaksOf(command, judge, scene, pvs);
+  if (!command.report.empty()) outputs.save(reportText(command, pvs, cells, leaks), command.report);
   if (!command.output.empty()) writeBetter(command, pvs, baked, cells);
-  if (pastLimits(command, cells)) throw ExitCode{kExitPastLimit};
+  const bool is_wrong =
+      std::ranges::any_of(leaks, [](const BoundLeaks& l) { return !l.unexplained.empty(); });
+  if (pastLimits(command, cells) || is_wrong) throw ExitCode{kExitPastLimit};
 }
 
 }  // namespace
@@ -125,6 +151,11 @@ void addVerifyCommand(CLI::App& app) {
       ->add_option("--report", options->report,
                    "write all that is not proven as JSON (docs/report.md); - is standard output")
       ->type_name("R.json");
+  command
+      ->add_option("--bound", options->bound,
+                   "made by bound of the same cells: list what of the sets is outside of it, each with an "
+                   "exact ray and where that enters an opaque voxel; exit code 3 if one does not")
+      ->type_name("UPPER.pvs");
   command
       ->add_option("--max-disproved", options->max_disproved,
                    "exit code 3 for more triangles disproved than this")

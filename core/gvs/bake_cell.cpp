@@ -53,6 +53,10 @@ class CellBake {
     device_.prepare(explores(), stage_params_);
     start_ = Clock::now();
     device_.beginCell(faces_, stage_params_);
+    if (hooks_.hidden.empty()) return;
+    // In the set from the start, and first in the list: rays that hit them find nothing new.
+    device_.insertContained(hooks_.hidden);
+    state_.pvs_size = state_.bordered = state_.listed = uint32_t(hooks_.hidden.size());
   }
 
   /// Everything up to the stop rule: T, or the target of `bound` where there is one. member: a byte a
@@ -335,7 +339,7 @@ class CellBake {
     p.testing = state_.testing;
     p.validating = state_.validating;
     p.rays = state_.rays + state_.stats.validation_rays + state_.stats.bound_rays;
-    p.pvs_size = state_.pvs_size;
+    p.pvs_size = state_.pvs_size - uint32_t(hooks_.hidden.size());
     p.new_triangles = state_.iteration_new;
     p.queued = state_.pvs_size - state_.bordered;
     p.seconds = seconds();
@@ -396,7 +400,8 @@ CellPvs bakeCell(Device& device, const Scene& scene, const ViewCell& cell, uint3
   }
   bake.addContained(contained);
   bake.validate();
-  const std::vector<PvsEntry> entries = device.readPvs();
+  const std::vector<PvsEntry> all = device.readPvs();
+  const std::span<const PvsEntry> entries = std::span(all).subspan(hooks.hidden.size());
   if (hooks.trace != nullptr) {
     for (const PvsEntry& entry : entries) hooks.trace->order.push_back(entry.origin_triangle.w);
   }

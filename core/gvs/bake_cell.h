@@ -1,6 +1,7 @@
 #pragma once
 #include <atomic>
 #include <functional>
+#include <span>
 
 #include "core/base/interrupted.h"
 #include "core/device/device.h"
@@ -15,13 +16,16 @@ namespace sightline {
 /// Told about the bake; called on the caller's thread.
 using ProgressCallback = std::function<void(const BakeProgress&)>;
 
-/// What bakeCell may be asked for besides the set; nothing but most_listed changes the set.
+/// What bakeCell may be asked for besides the set; nothing but most_listed and hidden changes the set.
 struct BakeHooks {
   ProgressCallback progress = {};
   const std::atomic<bool>* stop = nullptr;  ///< ends the bake with Interrupted when it becomes true
   BakeTrace* trace = nullptr;               ///< is replaced by how the set grew
   uint32_t most_listed = 1u << 25;  ///< discontinuities that may wait (16 bytes each on the device) before no
                                     ///< more are listed; for tests: another bound may change the set
+  /// Triangles that are known to be hidden: ascending. They do not enter the set, and what sees them by a
+  /// leak is not explored.
+  std::span<const uint32_t> hidden = {};
 };
 
 /// Throws Error (wrong usage) that names the parameter that is out of range.

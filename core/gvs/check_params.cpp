@@ -19,6 +19,7 @@ void checkParams(const BakeParams& params) {
           "threshold 0 never ends: give max-rays, max-seconds or target-error too");
   require(params.delta_abs + params.delta_abs_relative > 0,
           "one of delta-abs and delta-abs-relative must be above 0");
+  require(params.method != Method::kBound, "the method bound traces no rays: use sightline bound");
   require(params.smallest_hole == 0 || params.method != Method::kRaster,
           "smallest-hole looks at rays, and the method raster draws: use another method");
   require(params.smallest_hole == 0 || params.target_error == 0,

@@ -36,6 +36,8 @@ struct BakeParams {
                             ///< threshold; 0: off, else kSmallestTargetError up to 1
   float smallest_hole = 0;  ///< world units: a ray counts only where it has more room than this
                             ///< (narrow_gap.h) on its way; 0: exact
+  float bound = 0;          ///< world units: side of the voxels by which what is hidden was proved, of the
+                            ///< bound that limits the sets, or of one itself (method bound); 0: no bound
   bool operator==(const BakeParams&) const = default;
 };
 

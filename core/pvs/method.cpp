@@ -6,7 +6,7 @@
 namespace sightline {
 namespace {
 
-constexpr const char* kMethodNames[] = {"gvs++", "gvs", "random", "raster", "naive"};
+constexpr const char* kMethodNames[] = {"gvs++", "gvs", "random", "raster", "naive", "bound"};
 
 }  // namespace
 

@@ -77,10 +77,11 @@ inline constexpr uint64_t kMostRays = 1'000'000'000'000'000'000, kMostValidation
 
 /// In the order of the HEAD section, which can only grow at its end.
 inline constexpr Param kParams[] = {
-    {ParamField<Method>{&BakeParams::method, Method::kGvspp, Method::kNaive}, "method", "", nullptr, 3,
+    {ParamField<Method>{&BakeParams::method, Method::kGvspp, Method::kBound}, "method", "", nullptr, 3,
      kEveryMethod, ParamGroup::kMethod, "method",
      "gvs++; gvs: the original, with fewer border and reverse rays; random: random rays alone; raster: "
-     "drawn hemicubes, on vulkan only; naive: gvs++ with the set on the host, for comparison"},
+     "drawn hemicubes, on vulkan only; naive: gvs++ with the set on the host, for comparison; bound: not of "
+     "bakes but of sightline bound"},
     {ParamField<uint32_t>{&BakeParams::n_rand, 1, param_table::kMostUint32 - 2}, "n_rand", "rays", nullptr, 3,
      kEveryMethod, ParamGroup::kSamples, "random rays an iteration", "random rays an iteration"},
     {ParamField<uint32_t>{&BakeParams::n_abs_edge, 0, 1000}, "n_abs_edge", "samples", nullptr, 3,
@@ -145,6 +146,10 @@ inline constexpr Param kParams[] = {
      "world units", "none", 5, kMethodsByRays, ParamGroup::kHoles, "smallest hole",
      "gaps narrower than this count as closed, those wider than twice as much as open (0: every gap is "
      "open; docs/doors-and-gaps.md)"},
+    {ParamField<float>{&BakeParams::bound, 0, param_table::kMostFloat}, "bound", "world units", "none", 6,
+     kEveryMethod, ParamGroup::kHoles, "voxels of the bound",
+     "a .pvs file of sightline bound: what it proves hidden is left out of the sets; kept is the side of "
+     "its voxels (docs/bounds.md)"},
 };
 
 /// Calls f(const Param&, value) for each, in the order of kParams. Params: BakeParams, perhaps const.

@@ -12,7 +12,7 @@
 namespace sightline {
 
 /// Latest version of the format. A bake that needs nothing of it is written in version 4 (versionOf).
-inline constexpr uint32_t kPvsVersion = 5;
+inline constexpr uint32_t kPvsVersion = 6;
 
 /// All of a .pvs file (docs/pvs-format.md).
 struct PvsFile {

@@ -199,6 +199,7 @@ std::vector<uint32_t> readSet(ByteReader& in, CellStats& stats, const PvsFile& h
 }  // namespace
 
 uint32_t versionOf(const PvsFile& pvs) {
+  if (pvs.params.bound != 0) return kPvsVersionWithBound;
   const bool plain = pvs.doors.empty() && pvs.see_through.empty() && pvs.params.smallest_hole == 0 &&
                      pvs.offset == glm::dvec3(0.0);
   return plain ? kPvsVersionWithCosts : kPvsVersionWithDoors;

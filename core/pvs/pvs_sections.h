@@ -20,6 +20,9 @@ inline constexpr uint32_t kPvsVersionWithCosts = 4;
 /// The first version with a smallest hole, doors and objects that hide nothing.
 inline constexpr uint32_t kPvsVersionWithDoors = 5;
 
+/// The first version with a bound.
+inline constexpr uint32_t kPvsVersionWithBound = 6;
+
 /// Bytes before the first section.
 inline constexpr size_t kPvsPreludeBytes = 16;
 /// Bytes of a section before its payload, and after it.

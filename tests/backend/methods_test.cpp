@@ -284,6 +284,42 @@ TEST_P(Methods, TheTraceTellsHowTheSetGrew) {
   }
 }
 
+/// What is known to be hidden does not enter the set, and changes nothing else of it.
+TEST_P(Methods, WhatIsHiddenStaysOutOfTheSet) {
+  const Scene scene = generateScene("city", 3000, 1);
+  const ViewCell cell = generateCells("city", 3000, 1)[4];
+  const Bvh bvh = buildSceneTree(scene, {});
+  const auto device = makeDevice(GetParam(), scene, bvh, {});
+  for (const Method method : {Method::kGvspp, Method::kGvs, Method::kRandom}) {
+    const CellPvs all = bakeCell(*device, scene, cell, 0, params(method));
+    std::vector<uint32_t> hidden;
+    for (uint32_t id = 0; id < scene.triangleCount(); ++id) {
+      if (!std::binary_search(all.triangles.begin(), all.triangles.end(), id)) hidden.push_back(id);
+    }
+    ASSERT_GT(hidden.size(), 100u);
+    BakeHooks hooks;
+    hooks.hidden = hidden;
+    const CellPvs within = bakeCell(*device, scene, cell, 0, params(method), hooks);
+    EXPECT_EQ(within.triangles, all.triangles);
+    EXPECT_EQ(within.stats.random.rays, all.stats.random.rays);
+    EXPECT_EQ(within.stats.border.rays, all.stats.border.rays);
+    EXPECT_EQ(within.stats.reverse.rays, all.stats.reverse.rays);
+    ASSERT_EQ(within.witnesses.size(), all.witnesses.size());
+    for (size_t i = 0; i < all.witnesses.size(); ++i) {
+      EXPECT_EQ(within.witnesses[i].origin, all.witnesses[i].origin);
+      EXPECT_EQ(within.witnesses[i].direction, all.witnesses[i].direction);
+    }
+    // One that is seen, as if by a leak.
+    const uint32_t leak = all.triangles[all.triangles.size() / 2];
+    hidden.insert(std::lower_bound(hidden.begin(), hidden.end(), leak), leak);
+    hooks.hidden = hidden;
+    const CellPvs without = bakeCell(*device, scene, cell, 0, params(method), hooks);
+    EXPECT_FALSE(std::binary_search(without.triangles.begin(), without.triangles.end(), leak));
+    EXPECT_TRUE(std::includes(all.triangles.begin(), all.triangles.end(), without.triangles.begin(),
+                              without.triangles.end()));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Devices, Methods, testing::Values("cpu", "opencl", "vulkan"),
                          [](const auto& device) { return std::string(device.param); });
 

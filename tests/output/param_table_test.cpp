@@ -51,7 +51,8 @@ TEST(ParamTable, TheFileHoldsEachField) {
     const Bytes bytes = writeHeadPayload(other);
     // What is off by default is not written, in an older version: existing files do not change.
     const bool is_optional = param.since > versionOf(pvs);
-    EXPECT_EQ(bytes.size(), before.size() + (is_optional ? sizeof(float) : 0));
+    EXPECT_EQ(bytes.size(),
+              before.size() + (is_optional ? (param.since - versionOf(pvs)) * sizeof(float) : 0));
     EXPECT_EQ(versionOf(other), is_optional ? param.since : versionOf(pvs));
     EXPECT_NE(bytes, before);
     EXPECT_EQ(readHeadPayload(bytes, versionOf(other)).params, changed);
@@ -119,8 +120,8 @@ TEST(ParamTable, ValuesOutOfTheirRangeAreRefused) {
   EXPECT_EQ(problem([](BakeParams& p) { p.target_error = 1e-11; }),
             "target-error must be 0 (off) or 1e-10 .. 0.999999");
   EXPECT_EQ(problem([](BakeParams& p) { p.target_error = 0.5; }), "");
-  EXPECT_EQ(problem([](BakeParams& p) { p.method = Method(5); }),
-            "method must be gvs++, gvs, random, raster, naive");
+  EXPECT_EQ(problem([](BakeParams& p) { p.method = Method(6); }),
+            "method must be gvs++, gvs, random, raster, naive, bound");
   EXPECT_EQ(problem([](BakeParams& p) { p.order = Order(2); }), "order must be queue, yield");
   // Both ends of each are good.
   for (const Param& param : kParams) {

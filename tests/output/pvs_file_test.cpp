@@ -268,7 +268,7 @@ TEST(PvsFile, SaysWhatIsWrong) {
   bytes[8] = 9;
   EXPECT_NE(problemOf(bytes).find("version 9"), std::string::npos);
   bytes[8] = 2;
-  EXPECT_NE(problemOf(bytes).find("version 2 of the format, this program reads 3 to 5"), std::string::npos);
+  EXPECT_NE(problemOf(bytes).find("version 2 of the format, this program reads 3 to 6"), std::string::npos);
   bytes[0] = 'P';
   EXPECT_NE(problemOf(bytes).find("not a .pvs file"), std::string::npos);
   for (const std::string text : {"", "v", "{}", "v 0 0 0\n", "v 0 0 0\nv 1 0 0\nv 1 1 0\n"}) {

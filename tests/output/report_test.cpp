@@ -32,6 +32,7 @@ BakeReport exampleReport() {
   report.cells[0].open_added = 3;
   report.doors = {{"door", 10, 2}};
   report.see_through = {{"pane", 20, 2}};
+  for (const CellSummary& cell : report.cells) report.bounds.push_back(cell.pvs_size + 2);
   report.leaks = {Leaks{0.5f, 7, 300, {1, 2, 3}, 1000, 0.25}, {}};
   report.warnings = {{{CellVerdict::kMeetsTriangles, "meets 12 triangles", 12}}, {}, {}};
   report.planned_cells = 3;

@@ -1,0 +1,26 @@
+#pragma once
+#include <filesystem>
+#include <optional>
+
+#include "core/bound/bound_scene.h"
+#include "core/voxel/voxel_file.h"
+
+namespace sightline {
+
+/// Voxels of a file for bounds of the scene, as it is in its file (`scene_hash` its hash); `scene` may be
+/// that with more glass. Throws Error that names what else they are of.
+inline VoxelGrid loadBoundVoxels(const std::filesystem::path& file, uint64_t scene_hash) {
+  VoxelFile voxels = loadVoxels(file);
+  if (voxels.head.scene_hash != scene_hash) {
+    throw Error(file.string() + ": has voxels of another scene, or of another state of it", kExitUsage);
+  }
+  if (voxels.head.separation != Separation::kConservative) {
+    throw Error(file.string() +
+                    ": has not all voxels that triangles meet, which a bound needs: make it with "
+                    "voxels --separate conservative",
+                kExitUsage);
+  }
+  return std::move(voxels.levels.front());
+}
+
+}  // namespace sightline
