@@ -1,12 +1,19 @@
 #include "core/voxel/voxel_file.h"
 
 #include <gtest/gtest.h>
+#include <xxhash.h>
 
+#include <algorithm>
+#include <cstring>
 #include <fstream>
+#include <functional>
+#include <optional>
 #include <random>
 #include <set>
 
 #include "core/base/error.h"
+#include "core/pvs/pvs_sections.h"
+#include "core/pvs/set_codec.h"
 #include "core/voxel/voxelize.h"
 #include "tests/support/random_triangles.h"
 #include "tests/support/temporary_folder.h"
@@ -75,6 +82,103 @@ TEST(VoxelFile, EveryCutAndEveryChangedByteIsFound) {
     changed[at] ^= 0x10;
     EXPECT_THROW(parseVoxels(changed, "a.slv"), Error) << at;
   }
+}
+
+struct Section {
+  uint32_t kind;
+  Bytes payload;
+};
+
+std::vector<Section> sectionsOf(const std::vector<uint8_t>& bytes) {
+  std::vector<Section> sections;
+  for (size_t at = kPvsPreludeBytes; at < bytes.size();) {
+    ByteReader in(std::span<const uint8_t>(bytes).subspan(at));
+    const auto kind = in.number<uint32_t>();
+    in.number<uint32_t>();
+    const auto size = in.number<uint64_t>();
+    const auto payload = in.raw(size);
+    sections.push_back({kind, Bytes(payload.begin(), payload.end())});
+    at += kSectionHeadBytes + size + kSectionChecksumBytes;
+  }
+  return sections;
+}
+
+// With checksums that fit.
+Bytes joined(std::span<const uint8_t> prelude, std::vector<Section> sections) {
+  Bytes all(prelude.begin(), prelude.end());
+  for (Section& section : sections) {
+    if (section.kind == kSectionEnd && section.payload.size() >= 12) {
+      const uint64_t checksum = XXH3_64bits(all.data(), all.size());
+      std::memcpy(section.payload.data() + sizeof(uint32_t), &checksum, sizeof checksum);
+    }
+    const Bytes part = writeSection(section.kind, section.payload);
+    all.insert(all.end(), part.begin(), part.end());
+  }
+  return all;
+}
+
+// Changes, cuts or lengthens the bytes.
+void damage(Bytes& bytes, std::mt19937_64& random) {
+  const uint64_t what = random() % 8;
+  if (bytes.empty() || what == 0) {
+    bytes.push_back(uint8_t(random()));
+  } else if (what == 1) {
+    bytes.resize(random() % bytes.size());
+  } else {
+    const uint64_t changes = 1 + random() % 3;
+    for (uint64_t i = 0; i < changes; ++i) bytes[random() % bytes.size()] ^= uint8_t(1 + random() % 255);
+  }
+}
+
+// Damage that no checksum shows, packed parts included: an error, or a file that keeps its promises.
+TEST(VoxelFile, DamageBehindGoodChecksumsBreaksNoPromise) {
+  const TemporaryFolder folder;
+  write(voxelsOf(soupScene(9), 0x1p-3, true), folder / "a.slv");
+  const std::vector<uint8_t> whole = bytesOf(folder / "a.slv");
+  const auto prelude = std::span(whole).first(kPvsPreludeBytes);
+  const std::vector<Section> sections = sectionsOf(whole);
+  ASSERT_EQ(joined(prelude, sections), Bytes(whole.begin(), whole.end()));
+  std::mt19937_64 random(10);
+  int read = 0, refused = 0;
+  for (int i = 0; i < 4000; ++i) {
+    std::vector<Section> damaged = sections;
+    const size_t at = random() % damaged.size();
+    Bytes& payload = damaged[at].payload;
+    const size_t packed_from = damaged[at].kind == kSectionHead || damaged[at].kind == kSectionEnd
+                                   ? payload.size()
+                               : at % 3 == 0 ? 0
+                                             : 8;
+    auto content = packed_from < payload.size() ? decompress(std::span(payload).subspan(packed_from), 1 << 24)
+                                                : std::optional<Bytes>();
+    if (content && i % 4 != 0) {
+      damage(*content, random);
+      payload.resize(packed_from);
+      const Bytes frame = compress(*content);
+      payload.insert(payload.end(), frame.begin(), frame.end());
+    } else {
+      damage(payload, random);
+    }
+    try {
+      const VoxelFile file = parseVoxels(joined(prelude, damaged), "a.slv");
+      ++read;
+      for (const VoxelGrid& level : file.levels) {
+        ASSERT_FALSE(level.blocks.empty());
+        for (size_t k = 0; k < level.blocks.size(); ++k) {
+          const VoxelBlock& block = level.blocks[k];
+          ASSERT_TRUE(k == 0 || placeBefore(level.blocks[k - 1].place, block.place));
+          ASSERT_EQ(std::ranges::adjacent_find(block.triangles, std::greater_equal<>()),
+                    block.triangles.end());
+          ASSERT_TRUE(block.triangles.empty() || block.triangles.back() < file.head.triangle_count);
+          ASSERT_TRUE(block.normals.empty() || block.normals.size() == block.count());
+          ASSERT_FALSE(block.bricks.empty());
+        }
+      }
+    } catch (const Error&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(read, 100);
+  EXPECT_GT(refused, 1000);
 }
 
 TEST(VoxelFile, NothingIsLeftOfOneThatIsNotFinished) {
