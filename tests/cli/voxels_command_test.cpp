@@ -82,9 +82,9 @@ TEST(VoxelsCommand, RefusesInOneLine) {
   expectRun("voxels " + scene + " --voxel 1 -o " + where + "t2.obj", 2, {"t2.obj: must end with .slv"});
   EXPECT_FALSE(std::filesystem::exists(where + "t2.obj"));
   expectRun(voxels + "--voxel 1 --solid parity --reach 1,1,1", 2, {"--reach: is of --solid reach only"});
-  expectRun(voxels + "--voxel 1 --solid reach --reach 1,1", 2, {"--reach: '1,1' is not"});
+  expectRun(voxels + "--voxel 1 --solid reach --reach 1,1", 2, {"--reach: '1,1' has 2 numbers"});
   expectRun(voxels + "--voxel nan", 2, {"too small or too large"});
-  expectRun(voxels + "--voxel 0.0009765625", 2, {"take 0.00195312 or more"});
+  expectRun(voxels + "--voxel 0.0009765625", 2, {"take 0.001953125 or more"});
   expectRun(voxels + "--voxel 1 --along 7", 2, {"--along"});
   expectRun(voxels + "--device vulkan", 2, {"vulkan does not voxelise: expected cpu, opencl or opencl:N"});
   expectRun(voxels + "--attributes colour", 2, {"colour is none of normal, object"});
