@@ -189,11 +189,13 @@ void addBoundCommand(CLI::App& app) {
   a->size.declare(*command);
   for (const char* size : {"--voxel", "--along"})
     command->get_option("--voxels")->excludes(command->get_option(size));
-  command
-      ->add_option("--leaks", a->leaks,
-                   "Write what random rays see beyond the bound as JSON; - is standard output")
-      ->type_name("LEAKS.json");
+  CLI::Option* leaks =
+      command
+          ->add_option("--leaks", a->leaks,
+                       "Write what random rays see beyond the bound as JSON; - is standard output")
+          ->type_name("LEAKS.json");
   command->add_option("--rays", a->rays, "For --leaks: random rays of each cell")
+      ->needs(leaks)
       ->transform(wholeNumber(1, 1'000'000'000))
       ->type_name("N")
       ->capture_default_str();

@@ -224,7 +224,7 @@ void run(const CellsArguments& arguments) {
     }
     requireNew(picture, arguments.overwrite);
   }
-  const TextOutputs outputs({&arguments.output, 1});
+  const TextOutputs outputs(std::array{arguments.output, picture});
   const Scene scene = loadScene(arguments.scene, arguments.load);
   const std::vector<ViewCell> cells = placeCells(scene, arguments);
   outputs.save(cellsText(moved(cells, scene.offset), arguments.output), arguments.output);

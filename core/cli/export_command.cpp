@@ -78,22 +78,35 @@ void requireExtension(const ExportOptions& options) {
               kExitUsage);
 }
 
-/// The formats that only sets, or only voxels, have.
-void requireFormat(const ExportOptions& options, bool voxels) {
+/// What only sets, or only voxels, have.
+void requireFits(const ExportOptions& options, bool voxels) {
   const std::string& format = options.format;
   if (voxels && (format == "ids" || format == "json" || format == "objects")) {
     throw Error(fmt::format("{}: --format {} is of sets; voxels are written as glb, obj, ply or vdb",
                             options.pvs.string(), format),
                 kExitUsage);
   }
+  if (voxels && (!options.cell.empty() || !options.scene.empty())) {
+    throw Error(fmt::format("{}: {} is of sets, not of voxels; leave it out", options.pvs.string(),
+                            options.cell.empty() ? "--scene" : "--cell"),
+                kExitUsage);
+  }
+  if (voxels && isStandardOutput(options.out)) {
+    throw Error("--output: - is standard output, where voxels cannot go; give it a name", kExitUsage);
+  }
   if (!voxels && (format == "ply" || format == "vdb")) {
     throw Error(fmt::format("{}: --format {} is of voxels (.slv)", options.pvs.string(), format), kExitUsage);
+  }
+  if (!voxels && (options.level != 0 || options.merge)) {
+    throw Error(fmt::format("{}: {} is of voxels (.slv); leave it out", options.pvs.string(),
+                            options.merge ? "--merge" : "--level"),
+                kExitUsage);
   }
 }
 
 void runExport(const ExportOptions& options) {
   const bool voxels = isVoxelFile(options.pvs);
-  requireFormat(options, voxels);
+  requireFits(options, voxels);
   if (voxels) {
     requireExtension(options);
     requireSeparate(std::array{options.out}, std::array{options.pvs});
@@ -156,7 +169,7 @@ void addExportCommand(CLI::App& app) {
       ->required()
       ->check(oneOf({"ids", "obj", "glb", "json", "objects", "ply", "vdb"}))
       ->type_name("FORMAT");
-  command->add_option("-o,--output", options->out, "- is standard output, but for glb")
+  command->add_option("-o,--output", options->out, "- is standard output, but for glb and voxels")
       ->required()
       ->type_name("FILE");
   command

@@ -160,13 +160,15 @@ std::vector<ViewCell> placeOnFloor(const Scene& scene, const FreeCellsArguments&
 }
 
 void declareFreeCells(CLI::App& command, FreeCellsArguments& a) {
-  const auto above = [](double low) {
+  const auto length_check = [](bool may_be_zero) {
     return CLI::Validator(
-        [low](std::string& text) {
+        [may_be_zero](std::string& text) {
           double value = 0;
-          if (CLI::detail::lexical_cast(text, value) && value > low && std::isfinite(value))
+          if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
+              (value > 0 || (may_be_zero && value == 0))) {
             return std::string();
-          return fmt::format("{} is not a number above {}", text, low);
+          }
+          return fmt::format("{} is not {}", text, may_be_zero ? "0 or a number above" : "a number above 0");
         },
         "");
   };
@@ -176,7 +178,7 @@ void declareFreeCells(CLI::App& command, FreeCellsArguments& a) {
       "triangles");
   CLI::Option* floor = command.add_option(
       "--floor", a.floor, "Boxes that stand on the floor where one walks, seen from above at most so large");
-  floor->check(above(0));
+  floor->check(length_check(false));
   command
       .add_option("--voxel", a.voxel,
                   "Size of voxels, a power of two (default: an eighth of a box or less, on the floor half of "
@@ -186,17 +188,20 @@ void declareFreeCells(CLI::App& command, FreeCellsArguments& a) {
         return std::string("is of --reach and --floor, and neither is given");
       });
   FloorCellOptions& o = a.floor_options;
-  const auto length = [&](const char* name, double& value, const char* what, double low) {
-    command.add_option(name, value, what)->capture_default_str()->check(above(low))->needs(floor);
+  const auto length = [&](const char* name, double& value, const char* what, bool may_be_zero = false) {
+    command.add_option(name, value, what)
+        ->capture_default_str()
+        ->check(length_check(may_be_zero))
+        ->needs(floor);
   };
   command
       .add_option("--picture", a.picture,
                   "A picture of the floor from above to write (.png): what boxes cover green, what not red")
       ->needs(floor);
-  length("--least", o.least, "Of boxes on the floor: their sides at least", 0);
-  length("--eye", o.eye, "Of one who walks: the eye's height above the floor", 0);
-  length("--head", o.head, "And the free height that is needed, up to which boxes reach", 0);
-  length("--step", o.step, "And how far the floor may rise at a step", -1e-300);
+  length("--least", o.least, "Of boxes on the floor: their sides at least");
+  length("--eye", o.eye, "Of one who walks: the eye's height above the floor");
+  length("--head", o.head, "And the free height that is needed, up to which boxes reach");
+  length("--step", o.step, "And how far the floor may rise at a step", true);
 }
 
 }  // namespace sightline

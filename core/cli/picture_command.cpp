@@ -52,10 +52,11 @@ std::string missingList(const Picture& picture) {
 }
 
 void drawVoxelFile(const PictureCommand& command) {
-  if (!command.pvs.empty() || !command.cell.empty() || command.view != "outside") {
+  if (!command.pvs.empty() || !command.cell.empty() || !command.upper.empty() || command.view != "outside") {
     throw Error(
-        fmt::format("{}: a picture of voxels is of a level, without a set, a cell or a view from inside",
-                    command.scene.string()),
+        fmt::format(
+            "{}: a picture of voxels is of a level, without a set, a cell, a bound or a view from inside",
+            command.scene.string()),
         kExitUsage);
   }
   requireSeparate(std::array{command.output}, std::array{command.scene});
@@ -87,6 +88,12 @@ void draw(const PictureCommand& command) {
   }
   if (isVoxelFile(command.scene)) return drawVoxelFile(command);
   if (!command.reach.empty()) throw Error("--reach: is of voxels (.slv) only", kExitUsage);
+  if (command.level != 0) throw Error("--level: is of voxels (.slv) only", kExitUsage);
+  if (isVoxelFile(command.pvs)) {
+    throw Error(fmt::format("{}: holds voxels, which are drawn without a scene: give them alone",
+                            command.pvs.string()),
+                kExitUsage);
+  }
   if (command.pvs.empty()) throw CLI::RequiredError("pvs");
   if (command.cell.empty()) throw CLI::RequiredError("--cell");
   if (!command.upper.empty() && command.view != "outside") {

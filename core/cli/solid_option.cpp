@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/base/error.h"
 #include "core/cli/name_checks.h"
 #include "core/cli/points.h"
 #include "core/cli/share_line.h"
@@ -24,6 +25,12 @@ void SolidOption::declare(CLI::App& command) {
       .add_option("--reach", reach_,
                   "Of --solid reach: the places to start from, x,y,z x,y,z ... or a file (default: outside)")
       ->needs(solid);
+}
+
+void SolidOption::check() const {
+  if (reach_.empty()) return;
+  if (rule_ != "reach") throw Error("--reach: is of --solid reach only", kExitUsage);
+  readPoints(reach_, "--reach");
 }
 
 void SolidOption::fill(const Scene& scene, VoxelGrid& grid, const std::atomic<bool>* stop) const {

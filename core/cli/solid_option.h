@@ -16,6 +16,9 @@ class SolidOption {
   void declare(CLI::App& command);
   bool isAsked() const { return !rule_.empty(); }
 
+  /// Throws Error if --reach is not places, or is of another rule: before the work.
+  void check() const;
+
   /// Adds the voxels that are inside to the grid's, which must be conservative and, but for --solid reach,
   /// have its blocks' triangles; and says how much that is, in a line. Throws Error, and Interrupted.
   void fill(const Scene& scene, VoxelGrid& grid, const std::atomic<bool>* stop) const;

@@ -67,10 +67,8 @@ void writeBetter(const VerifyCommand& command, PvsFile& pvs, PvsFile& baked,
 }
 
 /// What of the sets is not in their bounds. With better witnesses, where there are.
-std::vector<BoundLeaks> leaksOf(const VerifyCommand& command, const Judge& judge, const Scene& scene,
-                                const PvsFile& pvs) {
-  const PvsFile bound = loadPvs(command.bound);
-  requireBound(bound, pvs, command.bound);
+std::vector<BoundLeaks> leaksOf(const Judge& judge, const Scene& scene, const PvsFile& pvs,
+                                const PvsFile& bound) {
   const BoundScene voxels = makeBoundScene(scene, {.lattice = latticeOf(double(bound.params.bound))});
   std::vector<BoundLeaks> leaks;
   for (const CellPvs& cell : pvs.cells) {
@@ -117,6 +115,11 @@ void run(const VerifyCommand& command) {
   if (!pvs.has_witnesses) {
     throw Error(fmt::format("{}: has no witnesses; bake it with --witnesses", command.pvs.string()));
   }
+  PvsFile bound;
+  if (!command.bound.empty()) {
+    bound = loadPvs(command.bound);
+    requireBound(bound, pvs, command.bound);  // refuses before the work
+  }
   Scene loaded = loadScene(command.scene, command.load);
   requireScene(pvs, loaded, command.pvs);
   const Scene scene = inState(std::move(loaded), baked, command.doors);
@@ -126,7 +129,7 @@ void run(const VerifyCommand& command) {
   for (CellPvs& cell : pvs.cells) cells.push_back(verifyCell(judge, scene, cell, command.options));
   std::fputs(verifyTable(cells).c_str(), stdout);
   std::vector<BoundLeaks> leaks;
-  if (!command.bound.empty()) leaks = leaksOf(command, judge, scene, pvs);
+  if (!command.bound.empty()) leaks = leaksOf(judge, scene, pvs, bound);
   if (!command.report.empty()) outputs.save(reportText(command, pvs, cells, leaks), command.report);
   if (!command.output.empty()) writeBetter(command, pvs, baked, cells);
   const bool is_wrong =

@@ -106,6 +106,11 @@ void run(const VoxelsArguments& arguments) {
   if (arguments.solid.isAsked() && (arguments.separate != "conservative" || !arguments.attributes.empty())) {
     throw Error("voxels: --solid is of conservative voxels, without --attributes", kExitUsage);
   }
+  arguments.solid.check();
+  // Another name would be taken for a scene by people and by scripts.
+  if (lowerExtension(arguments.output) != ".slv") {
+    throw Error(fmt::format("{}: must end with .slv", arguments.output.string()), kExitUsage);
+  }
   requireSeparate(std::array{arguments.output}, std::array{arguments.scene});
   requireNew(arguments.output, arguments.overwrite);
   const Scene scene = loadScene(arguments.scene, arguments.load);
@@ -157,7 +162,9 @@ void addVoxelsCommand(CLI::App& app) {
   CLI::App* command = app.add_subcommand("voxels", "Say which voxels of a lattice a scene meets");
   const auto a = std::make_shared<VoxelsArguments>();
   command->add_option("SCENE", a->scene, "Scene file: .obj, .gltf, .glb or .ply")->required();
-  command->add_option("-o,--output", a->output, "Voxel file to write (.slv)")->required();
+  command->add_option("-o,--output", a->output, "Voxel file to write (.slv)")
+      ->required()
+      ->check(notStandardOutput("a voxel file"));
   a->size.declare(*command);
   a->solid.declare(*command);
   command

@@ -20,9 +20,9 @@ bool fits(const Lattice& lattice, const Bounds& bounds) {
   return true;
 }
 
-// Of the power of two.
+// Of the power of two, with all digits: fewer would not be one.
 std::string sizeText(int exponent) {
-  return fmt::format("{:g}", std::ldexp(1.0, exponent));
+  return fmt::format("{}", std::ldexp(1.0, exponent));
 }
 
 }  // namespace

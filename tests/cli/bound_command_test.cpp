@@ -125,6 +125,13 @@ TEST_F(BoundCommand, RefusesInOneLine) {
             {"the same --see-through"});
   expectRun(bake("b.pvs", "--bound " + path("u.pvs") + " --doors 'tree*'"), 2, {"bake without --doors"});
   expectRun(bake("b.pvs", "--method bound"), 2, {"bound is none of"});
+  EXPECT_EQ(expectRun("verify " + path("c.glb") + " " + path("a.pvs") + " --bound " + path("a.pvs"), 2,
+                      {"a.pvs: is no bound"})
+                .output.find("box-1"),
+            std::string::npos);  // before the work
+  expectRun(
+      "bound " + path("c.glb") + " --cells " + path("cells.json") + " -o " + path("v.pvs") + " --rays 9", 2,
+      {"--rays requires --leaks"});
   std::string cells = textOf(path("cells.json"));
   cells.replace(cells.find("1.7"), 3, "1.8");
   std::ofstream(path("other.json")) << cells;

@@ -94,6 +94,12 @@ TEST(CellsCommand, PlacesWhatIsReachedAndTheFloor) {
   expectLine(start + "--floor 20 --eye 5", 2, "head");
   expectLine(start + "--floor nan", 2, "nan");
   expectLine(start + "--floor 20 --picture floor.jpg", 2, ".png");
+  // Before the work: one line, and no cells.
+  expectLine("cells '" + scene + "' -o '" + (folder / "no.json").string() +
+                 "' --floor 20 --least 2 --picture /nonexistent/floor.png",
+             1, "/nonexistent/floor.png");
+  EXPECT_FALSE(std::filesystem::exists(folder / "no.json"));
+  expectLine(start + "--floor 20 --step -1", 2, "--step: -1 is not 0 or a number above");
   expectLine(start + "--grid 8 --floor 8", 2, "takes one of");
   expectLine(start + "--path 0,1,0 0,1,9 --reach 0,1.5,0", 2, "--reach");
   expectLine(start + "--path 0,1,0 0,1,9 --free-side any", 2, "--free-side");

@@ -81,6 +81,17 @@ TEST_F(VoxelOutputs, SayWhatIsWrong) {
                    "there is no level 31");
   expectUsageError("picture " + voxels + " --cell 0 --device cpu -o '" + path("x.png") + "'",
                    "without a set, a cell");
+  expectUsageError("picture " + voxels + " --bound a.pvs --device cpu -o '" + path("x.png") + "'",
+                   "without a set, a cell, a bound");
+  expectUsageError("picture a.glb " + voxels + " --cell 0 --device cpu -o '" + path("x.png") + "'",
+                   "a.slv: holds voxels, which are drawn without a scene");
+  expectUsageError("picture a.glb a.pvs --cell 0 --level 1 --device cpu -o '" + path("x.png") + "'",
+                   "--level: is of voxels (.slv) only");
+  expectUsageError("export " + voxels + " --format ply --cell 0" + out, "--cell is of sets");
+  expectUsageError("export " + voxels + " --format ply --scene a.glb" + out, "--scene is of sets");
+  expectUsageError("export " + voxels + " --format ply -o -", "where voxels cannot go");
+  expectUsageError("export a.pvs --cell 0 --format ids --merge" + out, "--merge is of voxels (.slv)");
+  expectUsageError("export a.pvs --cell 0 --format ids --level 1" + out, "--level is of voxels (.slv)");
   expectUsageError("picture a.glb --cell 0 --device cpu -o '" + path("x.png") + "'", "pvs is required");
   expectUsageError("picture a.glb a.pvs --device cpu -o '" + path("x.png") + "'", "--cell is required");
   EXPECT_FALSE(std::filesystem::exists(path("x.ply")));

@@ -77,8 +77,14 @@ TEST(VoxelsCommand, RefusesInOneLine) {
   const std::string scene = folder.write("t.obj", "v 0 0 0\nv 100 0 0\nv 0 100 0\nf 1 2 3\n").string();
   const std::string voxels = "voxels " + scene + " -o " + where + "t.slv ";
   expectRun(voxels + "--voxel 0.3", 2, {"a voxel of 0.3 is not a power of two: take 0.25 or 0.5"});
+  expectRun(voxels + "--voxel 0.001", 2, {"take 0.0009765625 or 0.001953125"});  // as can be typed again
+  expectRun("voxels " + scene + " --voxel 1 -o -", 2, {"- is standard output, where a voxel file cannot go"});
+  expectRun("voxels " + scene + " --voxel 1 -o " + where + "t2.obj", 2, {"t2.obj: must end with .slv"});
+  EXPECT_FALSE(std::filesystem::exists(where + "t2.obj"));
+  expectRun(voxels + "--voxel 1 --solid parity --reach 1,1,1", 2, {"--reach: is of --solid reach only"});
+  expectRun(voxels + "--voxel 1 --solid reach --reach 1,1", 2, {"--reach: '1,1' has 2 numbers"});
   expectRun(voxels + "--voxel nan", 2, {"too small or too large"});
-  expectRun(voxels + "--voxel 0.0009765625", 2, {"take 0.00195312 or more"});
+  expectRun(voxels + "--voxel 0.0009765625", 2, {"take 0.001953125 or more"});
   expectRun(voxels + "--voxel 1 --along 7", 2, {"--along"});
   expectRun(voxels + "--device vulkan", 2, {"vulkan does not voxelise: expected cpu, opencl or opencl:N"});
   expectRun(voxels + "--attributes colour", 2, {"colour is none of normal, object"});

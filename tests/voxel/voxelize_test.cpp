@@ -145,9 +145,9 @@ TEST(Lattice, RefusesSizesThatAreNoPowersOfTwoAndTooSmall) {
   EXPECT_EQ(messageOf([] {
               requireFits(latticeOf(0x1p-10), {glm::vec3(0), glm::vec3(100)});
             }),
-            "voxels of 0.000976562 are too small for this scene, which may hold 65536 of them along an axis "
+            "voxels of 0.0009765625 are too small for this scene, which may hold 65536 of them along an axis "
             "and reach "
-            "67108864 from the origin: take 0.00195312 or more");
+            "67108864 from the origin: take 0.001953125 or more");
   EXPECT_EQ(latticeFor({glm::vec3(0), glm::vec3(100)}, 512).exponent, -2);
   EXPECT_EQ(latticeFor({glm::vec3(0), glm::vec3(128)}, 512).exponent, -2);
 }
