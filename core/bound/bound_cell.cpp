@@ -7,6 +7,7 @@
 #include "core/base/interrupted.h"
 #include "core/bound/hide.h"
 #include "core/bound/layer_search.h"
+#include "core/bound/start_rows.h"
 #include "core/voxel/bin_triangles.h"
 #include "core/voxel/reach.h"
 
@@ -15,37 +16,12 @@ namespace {
 
 constexpr uint32_t kTrianglesATime = 1u << 18;  // between two looks at `stop`
 
-VoxelBox voxelsOf(const RealBox& box) {
-  return {glm::ivec3(glm::floor(box.low)), glm::ivec3(glm::floor(box.high))};
-}
-
 // The voxels around the scene and the cell, a segment between which leaves none of them.
 VoxelBox regionOf(const BoundScene& scene, const CellHull& hull) {
   const Bounds bounds = sceneBounds(scene.scene);
   const Lattice& lattice = scene.all.lattice;
   return voxelsOf({glm::min(lattice.toVoxels(bounds.low), hull.box().low),
                    glm::max(lattice.toVoxels(bounds.high), hull.box().high)});
-}
-
-// Rows of the voxels that the cell may meet and no triangle does.
-std::vector<VoxelBox> freeRows(const CellHull& hull, const VoxelLookup& walls) {
-  std::vector<VoxelBox> rows;
-  const VoxelBox box = voxelsOf(hull.box());
-  for (int z = box.low.z; z <= box.high.z; ++z) {
-    for (int y = box.low.y; y <= box.high.y; ++y) {
-      for (int x = box.low.x; x <= box.high.x; ++x) {
-        const glm::dvec3 low(x, y, z);
-        if (!hull.mayMeet({low, low + 1.0}) || walls.contains({x, y, z})) continue;
-        const bool goes_on = !rows.empty() && rows.back().high == glm::ivec3(x - 1, y, z);
-        if (goes_on) {
-          rows.back().high.x = x;
-        } else {
-          rows.push_back({{x, y, z}, {x, y, z}});
-        }
-      }
-    }
-  }
-  return rows;
 }
 
 // The voxels of the region that are inner.
@@ -76,13 +52,13 @@ void copyInner(const VoxelSpace& space, const VoxelBox& region, const glm::ivec3
   inner.set(place, Share::kSome, open.packed());
 }
 
-BlockedSpace innerOf(const BoundScene& scene, const CellHull& hull, const VoxelBox& region,
-                     const std::atomic<bool>* stop) {
+BlockedSpace innerOf(const BoundScene& scene, const ViewCell& cell, const CellHull& hull,
+                     const VoxelBox& region, const std::atomic<bool>* stop) {
   BlockedSpace inner({region.low >> 6, region.high >> 6});
   const VoxelGrid& walls = scene.walls();
   if (walls.blocks.empty()) return inner;
   ReachOptions options;
-  options.boxes = freeRows(hull, VoxelLookup(walls));
+  options.boxes = startRows(scene, cell, hull, region);
   options.within = region;
   options.stop = stop;
   if (options.boxes.empty()) return inner;
@@ -154,7 +130,7 @@ bool mayBeSeen(const std::array<glm::dvec3, 3>& corners, BlockedView& view, Laye
 
 BlockedSpace innerVoxels(const BoundScene& scene, const ViewCell& cell, const std::atomic<bool>* stop) {
   const CellHull hull(cell, scene.all.lattice);
-  return innerOf(scene, hull, regionOf(scene, hull), stop);
+  return innerOf(scene, cell, hull, regionOf(scene, hull), stop);
 }
 
 CellBound boundCell(const BoundScene& scene, const ViewCell& cell, const BoundOptions& options) {

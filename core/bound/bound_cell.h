@@ -28,16 +28,17 @@ struct CellBound {
 
 /// The voxels that are opaque to the cell: no triangle (that stops rays) meets them, and no path from face to
 /// face of voxels without leads to them from the cell, inside of the box around the cell and the scene, which
-/// no segment between the two leaves. None if triangles meet all of the cell's voxels.
+/// no segment between the two leaves. Where a triangle meets the cell, paths begin on both of its sides. None
+/// if triangles meet all of the cell's voxels.
 BlockedSpace innerVoxels(const BoundScene& scene, const ViewCell& cell,
                          const std::atomic<bool>* stop = nullptr);
 
 /// Every triangle with a point that a segment from a point of the cell meets before any other triangle is in
 /// the bound, but for leaks: those whose every such segment passes a voxel that is opaque to the cell, which
-/// it can enter by a gap narrower than a voxel only. So are all with a point in the cell. Of a flat cell,
-/// what lies wholly behind its plane is hidden.
-/// The cell is in the scene's space (Scene::offset taken off). The same on any number of threads. Throws
-/// Interrupted.
+/// it can enter only by a gap that no path of voxels without triangles fits through: at most 2 voxels wide
+/// between walls along the axes, 2 sqrt(3) between others. So are all with a point in the cell. Of a flat
+/// cell, what lies wholly behind its plane is hidden. The cell is in the scene's space (Scene::offset taken
+/// off). The same on any number of threads. Throws Interrupted.
 CellBound boundCell(const BoundScene& scene, const ViewCell& cell, const BoundOptions& options = {});
 
 /// The same by other opaque voxels.

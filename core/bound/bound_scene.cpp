@@ -5,8 +5,6 @@
 namespace sightline {
 namespace {
 
-constexpr uint32_t kPassable = kSurfaceMasked | kSurfaceGlass | kSurfaceFrontOnly;
-
 /// Appends the stored triangles from first on that no ray passes, with their vertices less `shift`.
 void appendOpaque(const Scene& scene, uint32_t first, uint32_t count, uint32_t shift, Scene& part) {
   for (uint32_t i = first; i < first + count; ++i) {

@@ -6,6 +6,9 @@
 
 namespace sightline {
 
+/// Rays pass triangles with one of these: holes, glass, and what only has a front.
+inline constexpr uint32_t kPassable = kSurfaceMasked | kSurfaceGlass | kSurfaceFrontOnly;
+
 /// A scene's voxels, as bounds need them.
 struct BoundScene {
   const Scene& scene;

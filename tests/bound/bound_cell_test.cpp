@@ -289,6 +289,32 @@ TEST(BoundCell, OpenSheetsHideNothing) {
   EXPECT_TRUE(std::binary_search(bound.triangles.begin(), bound.triangles.end(), behind));
 }
 
+// Two closed rooms beside each other with a wall without thickness between them, and a thing in the second.
+// From a cell in the first, the second is hidden; from one that sticks through the wall by less than a voxel,
+// all of it is seen, though every voxel of the cell there has a triangle in it.
+TEST(BoundCell, CellsThroughAWallSeeBothOfItsSides) {
+  for (const glm::dvec3& turn : {glm::dvec3(0), glm::dvec3(10, 20, 30)}) {
+    SceneOfBoxes boxes;
+    boxes.addBox({-4, -2, -2}, {0.02f, 2, 2});
+    const uint32_t room = boxes.addBox({0.02f, -2, -2}, {4, 2, 2});
+    const uint32_t thing = boxes.addTriangle({3, 0, 0}, {3, 0.5f, 0}, {3, 0, 0.5f});
+    const Scene scene = boxes.finish();
+    const BoundScene voxels = voxelsOf(scene);
+    const double reach = glm::all(glm::equal(turn, glm::dvec3(0))) ? 0.5 : 0.62;
+    for (const bool is_through : {false, true}) {
+      const ViewCell cell = makeCell({(is_through ? 0.22 : -0.1) - reach, 0, 0}, {1, 0.3, 0.3}, turn);
+      const CellBound bound = boundCell(voxels, cell);
+      Random random(5);
+      const Sightings sightings = Onlooker(scene).look(voxels, cell, bound.triangles, 200, random);
+      EXPECT_EQ(sightings.faults, std::vector<std::string>());
+      EXPECT_EQ(sightings.leaks, 0u) << is_through;
+      for (const uint32_t id : {room + 2, thing}) {  // the far wall, and the thing
+        EXPECT_EQ(std::binary_search(bound.triangles.begin(), bound.triangles.end(), id), is_through) << id;
+      }
+    }
+  }
+}
+
 // Under a floor that ends with the scene nothing is seen, though a path around the floor's edge leads there.
 TEST(BoundCell, TerrainIsSolid) {
   SceneOfBoxes boxes;
