@@ -160,8 +160,8 @@ Layout vulkanLayout() {
 #undef SL_BUFFER_FIELD
 #define SL_OF VulkanLaunch
 #define SL_ADDRESS(field) launch.fields.push_back(SL_FIELD("uint64", field))
-  SL_ADDRESS(tlas), SL_ADDRESS(part_starts), SL_ADDRESS(part_ids), SL_ADDRESS(instances),
-      SL_ADDRESS(leaf_ids);
+  SL_ADDRESS(tlas), SL_ADDRESS(part_starts), SL_ADDRESS(part_ids), SL_ADDRESS(part_places),
+      SL_ADDRESS(instances), SL_ADDRESS(leaf_ids);
   SL_ADDRESS(corners), SL_ADDRESS(surfaces), SL_ADDRESS(hemicube), SL_ADDRESS(hemicubes),
       SL_ADDRESS(chunk_bounds), SL_ADDRESS(draws), SL_ADDRESS(raster_leaves);
 #undef SL_ADDRESS
