@@ -20,6 +20,13 @@ inline VoxelGrid loadBoundVoxels(const std::filesystem::path& file, uint64_t sce
                     "voxels --separate conservative",
                 kExitUsage);
   }
+  if (voxels.head.is_solid) {
+    throw Error(
+        file.string() +
+            ": holds what is inside of solids as if triangles met it, and a bound looks for what they seal "
+            "off itself: make it with voxels without --solid",
+        kExitUsage);
+  }
   return std::move(voxels.levels.front());
 }
 

@@ -176,6 +176,7 @@ void showVoxels(const std::filesystem::path& file) {
   row("voxels are", head.separation == Separation::kConservative ? "all that a triangle meets"
                     : head.separation == Separation::k26         ? "those of a 26-separating set"
                                                                  : "those of a 6-separating set");
+  if (head.is_solid) row("solids", "what is inside of them is in the set, too");
   row("blocks have", fmt::format("{}{}{}", head.has_triangles ? "ids of triangles" : "no ids",
                                  head.has_normals ? ", normals" : "", head.has_objects ? ", objects" : ""));
   for (size_t level = 0; level < voxels.levels.size(); ++level) {

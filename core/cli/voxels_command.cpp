@@ -126,7 +126,9 @@ void run(const VoxelsArguments& arguments) {
       .progress = [&](double done,
                       uint64_t voxels) { status.show(done, [&] { return shortCount(voxels) + " voxels"; }); },
       .stop = stop.flag()};
-  VoxelWriter writer(arguments.output, headOf(scene, options));
+  VoxelHead head = headOf(scene, options);
+  head.is_solid = arguments.solid.isAsked();
+  VoxelWriter writer(arguments.output, head);
   try {
     if (arguments.solid.isAsked()) {
       writeSolid(arguments, scene, options, writer);

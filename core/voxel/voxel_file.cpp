@@ -30,7 +30,7 @@ Bytes headPayload(const VoxelHead& head) {
   out.number(int32_t(head.lattice.exponent));
   out.number(uint32_t(head.separation));
   out.number(uint32_t(head.has_triangles) | uint32_t(head.has_normals) << 1 |
-             uint32_t(head.has_objects) << 2);
+             uint32_t(head.has_objects) << 2 | uint32_t(head.is_solid) << 3);
   out.number(head.scene_hash);
   out.number(head.triangle_count);
   for (int axis = 0; axis < 3; ++axis) out.number(head.offset[axis]);
@@ -46,10 +46,11 @@ VoxelHead readHead(std::span<const uint8_t> payload) {
   head.has_triangles = (parts & 1) != 0;
   head.has_normals = (parts & 2) != 0;
   head.has_objects = (parts & 4) != 0;
+  head.is_solid = (parts & 8) != 0;
   head.scene_hash = in.number<uint64_t>();
   head.triangle_count = in.number<uint32_t>();
   for (int axis = 0; axis < 3; ++axis) head.offset[axis] = in.number<double>();
-  if (!in.finished() || parts > 7 || separation > uint32_t(Separation::k6))
+  if (!in.finished() || parts > 15 || separation > uint32_t(Separation::k6))
     throw Damage("the head is not as long as it should be, or of a later version");
   if (head.lattice.exponent < -100 || head.lattice.exponent > 100) {
     throw Damage(fmt::format("a voxel of 2^{} is out of range", head.lattice.exponent));

@@ -24,6 +24,7 @@ struct VoxelHead {
   bool has_triangles = false;   ///< the finest level's blocks have ids
   bool has_normals = false;     ///< and normals a voxel
   bool has_objects = false;     ///< and objects
+  bool is_solid = false;        ///< what is inside of solids is in the set, too
   uint64_t scene_hash = 0;      ///< hashScene
   uint32_t triangle_count = 0;  ///< of the scene
   glm::dvec3 offset{0.0};  ///< Scene::offset: a voxel's place in the scene's file is its place here and this

@@ -113,6 +113,9 @@ TEST_F(BoundCommand, TakesVoxelsOfAFile) {
   expectRun("voxels " + path("c.glb") + " --voxel 0.5 --separate 6 -o " + path("six.slv"), 0, {});
   expectRun(bound + " --overwrite --voxels " + path("six.slv"), 2,
             {"make it with voxels --separate conservative"});
+  expectRun("voxels " + path("c.glb") + " --voxel 0.5 --solid reach -o " + path("solid.slv"), 0, {});
+  expectRun("info " + path("solid.slv"), 0, {"what is inside of them is in the set, too"});
+  expectRun(bound + " --overwrite --voxels " + path("solid.slv"), 2, {"make it with voxels without --solid"});
   expectRun(bound + " --voxels " + path("c.slv") + " --voxel 0.5", 2, {"--voxel"});
 }
 
