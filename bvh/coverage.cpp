@@ -2,26 +2,19 @@
 
 #include <algorithm>
 
+#include "bvh/clip_polygon.h"
+
 namespace sightline {
 
 namespace {
 
 using Polygon = std::vector<glm::dvec3>;
 
-/// The part of a convex polygon with sign * coordinate >= sign * plane. Points on the plane get exactly the
-/// plane's coordinate, so that a piece cut at a box's face lies in the box.
+/// As clipPolygon.
 Polygon clip(const Polygon& polygon, int axis, double plane, double sign) {
   Polygon result;
-  for (size_t i = 0; i < polygon.size(); ++i) {
-    const glm::dvec3 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-    const double da = sign * (a[axis] - plane), db = sign * (b[axis] - plane);
-    if (da >= 0) result.push_back(a);
-    if ((da > 0 && db < 0) || (da < 0 && db > 0)) {
-      glm::dvec3 p = a + (b - a) * (da / (da - db));
-      p[axis] = plane;
-      result.push_back(p);
-    }
-  }
+  clipPolygon(polygon.data(), polygon.size(), axis, plane, sign,
+              [&](const glm::dvec3& corner) { result.push_back(corner); });
   return result;
 }
 

@@ -164,11 +164,8 @@ void BlockedView::goTo(const glm::ivec3& block) {
 
 // Of a brick of the block looked at, of which some is in the set.
 const std::array<uint64_t, 8>* BlockedView::brickAt(const glm::ivec3& brick) const {
-  const int bit = brick.x + 8 * brick.y;
-  if (kind_ == Kind::kOwn) return bits_ + 64 * brick.z + bit;
-  int rank = std::popcount(some_[brick.z] & ((uint64_t{1} << bit) - 1));
-  for (int z = 0; z < brick.z; ++z) rank += std::popcount(some_[z]);
-  return bits_ + rank;
+  if (kind_ == Kind::kOwn) return bits_ + 64 * brick.z + 8 * brick.y + brick.x;
+  return bits_ + placeOfBits(some_, brick);
 }
 
 BlockedView::Cube BlockedView::cubeAt(const glm::ivec3& voxel) {

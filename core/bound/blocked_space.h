@@ -1,4 +1,5 @@
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -80,6 +81,25 @@ class BlockedView {
     int side;
   };
   Cube cubeAt(const glm::ivec3& voxel);
+
+  /// Calls visit(share, blocked) for the cubes that a segment passes, with the share of it (0 .. 1, rounded)
+  /// at which it comes to each, until it returns false. nudge: the share by which it goes past each, in spite
+  /// of rounding; cubes that the segment crosses for less may be left out.
+  template <typename Visit>
+  void visitAlong(const glm::dvec3& from, const glm::dvec3& way, double nudge, Visit&& visit) {
+    for (double share = 0; share < 1;) {
+      const glm::ivec3 voxel(glm::floor(from + way * share));
+      const Cube cube = cubeAt(voxel);
+      if (!visit(share, cube.blocked)) return;
+      double end = 1;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (way[axis] == 0) continue;
+        const int low = voxel[axis] & -cube.side;
+        end = std::min(end, (double(way[axis] > 0 ? low + cube.side : low) - from[axis]) / way[axis]);
+      }
+      share = std::max(end, share) + nudge;
+    }
+  }
 
   /// Whether all voxels of a layer across the axis, from low to high (both with their ends) along the next
   /// two axes u and v, are in the set. layer[axis] is the layer.

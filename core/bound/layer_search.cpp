@@ -64,23 +64,17 @@ LayerSearch::Result LayerSearch::lookFrom(size_t index, const RealBox& box) {
   const double nudge = 0.25 / length;  // to be past a side of a cube, in spite of rounding
   double run = -1;                     // where a blocked part began
   bool is_blocked = false;
-  for (double share = 0; share < 1;) {
-    const glm::ivec3 voxel(glm::floor(from + way * share));
-    const BlockedView::Cube cube = view_.cubeAt(voxel);
-    if (cube.blocked && run < 0) run = share;
-    is_blocked = is_blocked || cube.blocked;
-    if (!cube.blocked && run >= 0) {
-      if (tryRun(part, box, between, from, way, run, share)) return Result::kHidden;
+  bool is_hidden = false;
+  view_.visitAlong(from, way, nudge, [&](double share, bool blocked) {
+    if (blocked && run < 0) run = share;
+    is_blocked = is_blocked || blocked;
+    if (!blocked && run >= 0) {
+      is_hidden = tryRun(part, box, between, from, way, run, share);
       run = -1;
     }
-    double end = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (way[axis] == 0) continue;
-      const int low = voxel[axis] & -cube.side;
-      end = std::min(end, (double(way[axis] > 0 ? low + cube.side : low) - from[axis]) / way[axis]);
-    }
-    share = std::max(end, share) + nudge;
-  }
+    return !is_hidden;
+  });
+  if (is_hidden) return Result::kHidden;
   if (run >= 0 && tryRun(part, box, between, from, way, run, 1)) return Result::kHidden;
   if (!is_blocked) return Result::kFree;
   if (2 * index + 2 >= parts_.size()) return Result::kOpen;

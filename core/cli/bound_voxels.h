@@ -11,9 +11,7 @@ namespace sightline {
 /// that with more glass. Throws Error that names what else they are of.
 inline VoxelGrid loadBoundVoxels(const std::filesystem::path& file, uint64_t scene_hash) {
   VoxelFile voxels = loadVoxels(file);
-  if (voxels.head.scene_hash != scene_hash) {
-    throw Error(file.string() + ": has voxels of another scene, or of another state of it", kExitUsage);
-  }
+  requireScene(voxels.head, scene_hash, file);
   if (voxels.head.separation != Separation::kConservative) {
     throw Error(file.string() +
                     ": has not all voxels that triangles meet, which a bound needs: make it with "

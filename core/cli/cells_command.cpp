@@ -7,9 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "core/bake/status_line.h"
 #include "core/base/error.h"
-#include "core/base/interrupted.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/free_cells.h"
@@ -18,8 +16,8 @@
 #include "core/cli/number_checks.h"
 #include "core/cli/overwrite.h"
 #include "core/cli/points.h"
-#include "core/cli/stop_signal.h"
 #include "core/cli/text_outputs.h"
+#include "core/cli/watched_placing.h"
 #include "core/formats/cells_file.h"
 #include "core/formats/load_scene.h"
 #include "core/formats/walk_file.h"
@@ -77,25 +75,16 @@ GridOptions gridOptions(const CellsArguments& arguments, const glm::dvec3& offse
 /// The grid's cells, with progress. Throws ExitCode if it was stopped.
 std::vector<ViewCell> runGrid(const Scene& scene, const GridOptions& options, GridCounts& counts) {
   const Bvh bvh = buildSceneTree(scene);
-  const StopSignal stop;
-  StatusLine status;
+  WatchedPlacing watched;
   GridHooks hooks;
-  hooks.stop = stop.flag();
+  hooks.stop = watched.flag();
   hooks.progress = [&](uint64_t done, uint64_t boxes) {
-    status.show([&] {
+    watched.show([&] {
       return fmt::format("grid: {} of {} boxes, {} %", done, boxes,
                          100 * done / std::max<uint64_t>(boxes, 1));
     });
   };
-  try {
-    std::vector<ViewCell> cells = gridCells(scene, bvh, options, &counts, hooks);
-    status.end();
-    return cells;
-  } catch (const Interrupted&) {
-    status.end();
-    fmt::print("stopped: no cells are written\n");
-    throw ExitCode{stop.exitCode()};
-  }
+  return watched.run([&] { return gridCells(scene, bvh, options, &counts, hooks); });
 }
 
 std::vector<ViewCell> placeGrid(const Scene& scene, const CellsArguments& arguments) {

@@ -5,13 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/bake/status_line.h"
 #include "core/base/error.h"
-#include "core/base/interrupted.h"
 #include "core/base/text.h"
 #include "core/cli/commands.h"
 #include "core/cli/points.h"
-#include "core/cli/stop_signal.h"
+#include "core/cli/watched_placing.h"
 #include "core/picture/floor_picture.h"
 #include "core/scene/scene_tree.h"
 #include "core/voxel/reach.h"
@@ -21,38 +19,6 @@ namespace sightline {
 namespace {
 
 constexpr uint32_t kLongestPicture = 1600;  // pixels
-
-/// Stops in order, and shows how far it is.
-class Watched {
- public:
-  const std::atomic<bool>* flag() const { return stop_.flag(); }
-
-  std::function<void(double)> progress(const std::string& what) {
-    return [this, what](double done) {
-      status_.show([&] { return fmt::format("{}: {:.0f} %", what, 100 * done); });
-    };
-  }
-
-  template <typename Work>
-  auto run(Work&& work) {
-    try {
-      auto result = work();
-      status_.end();
-      return result;
-    } catch (const Interrupted&) {
-      status_.end();
-      fmt::print("stopped: no cells are written\n");
-      throw ExitCode{stop_.exitCode()};
-    } catch (...) {
-      status_.end();
-      throw;
-    }
-  }
-
- private:
-  StopSignal stop_;
-  StatusLine status_;
-};
 
 Lattice chooseLattice(const Scene& scene, const FreeCellsArguments& arguments, double largest_voxel) {
   int exponent = 0;
@@ -69,7 +35,8 @@ std::vector<glm::dvec3> seedsOf(const Scene& scene, const FreeCellsArguments& ar
   return seeds;
 }
 
-std::unique_ptr<FreeSpace> voxelizeScene(const Scene& scene, const Lattice& lattice, Watched& watched) {
+std::unique_ptr<FreeSpace> voxelizeScene(const Scene& scene, const Lattice& lattice,
+                                         WatchedPlacing& watched) {
   auto result = std::make_unique<FreeSpace>();
   VoxelizeOptions options{.lattice = lattice, .with_triangles = false};
   const auto show = watched.progress("voxels");
@@ -80,7 +47,7 @@ std::unique_ptr<FreeSpace> voxelizeScene(const Scene& scene, const Lattice& latt
 }
 
 std::unique_ptr<FreeSpace> reachFrom(const Scene& scene, const Lattice& lattice,
-                                     const std::vector<glm::dvec3>& seeds, Watched& watched) {
+                                     const std::vector<glm::dvec3>& seeds, WatchedPlacing& watched) {
   std::unique_ptr<FreeSpace> result = voxelizeScene(scene, lattice, watched);
   ReachOptions options{.seeds = seeds};
   options.progress = watched.progress("free space");
@@ -111,7 +78,7 @@ std::unique_ptr<FreeSpace> findReached(const Scene& scene, const FreeCellsArgume
                                        double largest_voxel) {
   const Lattice lattice = chooseLattice(scene, arguments, largest_voxel);
   const std::vector<glm::dvec3> seeds = seedsOf(scene, arguments);
-  Watched watched;
+  WatchedPlacing watched;
   std::unique_ptr<FreeSpace> free = watched.run([&] { return reachFrom(scene, lattice, seeds, watched); });
   fmt::print("{}: {}\n", voxelsText(lattice), reachedText(free->space->counts()));
   return free;
@@ -127,7 +94,7 @@ std::vector<ViewCell> placeOnFloor(const Scene& scene, const FreeCellsArguments&
   options.free_side = seeds.empty() ? free_side : FreeSide::kAny;
   const Lattice lattice = chooseLattice(scene, arguments, std::min(options.head / 12, options.least / 2));
   floorOptions(lattice, options);  // refuses before the work
-  Watched watched;
+  WatchedPlacing watched;
   options.progress = watched.progress("cells");
   options.stop = watched.flag();
   const PlacedOnFloor placed = watched.run([&] {

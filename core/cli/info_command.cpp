@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstring>
-#include <fstream>
 #include <memory>
 
 #include "core/bake/cell_table.h"
@@ -43,13 +41,8 @@ std::string cellLine(const ViewCell& cell) {
 }
 
 bool isPvs(const std::filesystem::path& file) {
-  char start[sizeof(kPvsMagic)] = {};
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(file, ignored)) {  // a pipe would keep us waiting
-    std::ifstream(file, std::ios::binary).read(start, sizeof(start));
-  }
   const std::string extension = lowerExtension(file);
-  return std::memcmp(start, kPvsMagic, sizeof(start)) == 0 || extension == ".pvs" || extension == ".part";
+  return beginsWith(file, kPvsMagic) || extension == ".pvs" || extension == ".part";
 }
 
 /// Whether a scene looks as if its unit were a millimetre: larger than a kilometre in metres, of parts larger

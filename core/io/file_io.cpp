@@ -5,8 +5,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <vector>
 
 #include "core/base/error.h"
 #include "core/io/publish.h"
@@ -30,6 +33,15 @@ struct Descriptor {
 };
 
 }  // namespace
+
+bool beginsWith(const std::filesystem::path& file, std::span<const uint8_t> magic) {
+  std::vector<char> start(magic.size(), 0);
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(file, ignored)) {
+    std::ifstream(file, std::ios::binary).read(start.data(), std::streamsize(start.size()));
+  }
+  return std::ranges::equal(start, magic, {}, [](char c) { return uint8_t(c); });
+}
 
 FileBytes readFile(const std::filesystem::path& file) {
   // Not blocking, so that a pipe without a writer is refused below and not waited for.

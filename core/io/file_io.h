@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -18,6 +19,10 @@ struct FileBytes {
 
 /// Reads a whole regular file. Throws Error: no such file, a directory, not readable, too large.
 FileBytes readFile(const std::filesystem::path& file);
+
+/// Whether a regular file begins so; false for one that cannot be read. Pipes are not: they would keep us
+/// waiting.
+bool beginsWith(const std::filesystem::path& file, std::span<const uint8_t> magic);
 
 /// Throws Error if something is there that must not be replaced: a folder, a device, a pipe. Links are
 /// followed.

@@ -13,13 +13,6 @@
 namespace sightline {
 namespace {
 
-struct Section {
-  uint32_t kind = 0;
-  std::span<const uint8_t> payload;
-  uint64_t offset = 0;  ///< of its first byte in the file
-  uint64_t end = 0;     ///< of the byte after it
-};
-
 Bytes readBytes(const std::filesystem::path& file) {
   const FileBytes content = readFile(file);
   return Bytes(content.data.get(), content.data.get() + content.size);
@@ -51,23 +44,6 @@ uint32_t readPrelude(const Bytes& bytes, const std::filesystem::path& file) {
   }
   if (in.number<uint32_t>() != 0) failAt(file, 12, "four zero bytes expected");
   return version;
-}
-
-/// Throws Damage if there is no sound section at `offset`.
-Section readSection(const Bytes& bytes, uint64_t offset) {
-  ByteReader in{std::span(bytes).subspan(size_t(offset))};
-  Section section{in.number<uint32_t>(), {}, offset, 0};
-  const auto reserved = in.number<uint32_t>();
-  const auto size = in.number<uint64_t>();
-  if (in.failed()) throw Damage("cut off in the head of a section");
-  section.payload = in.raw(size);
-  const auto checksum = in.number<uint64_t>();
-  if (in.failed()) throw Damage("cut off in a section");
-  section.end = offset + kSectionHeadBytes + size + kSectionChecksumBytes;
-  if (checksum != XXH3_64bits(bytes.data() + offset, kSectionHeadBytes + size) || reserved != 0) {
-    throw Damage("checksum of a section differs");
-  }
-  return section;
 }
 
 /// Reads the head into `pvs` and returns its end.

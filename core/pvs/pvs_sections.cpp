@@ -205,9 +205,9 @@ uint32_t versionOf(const PvsFile& pvs) {
   return plain ? kPvsVersionWithCosts : kPvsVersionWithDoors;
 }
 
-Bytes writePrelude(uint32_t version) {
+Bytes writePrelude(std::span<const uint8_t, sizeof(kPvsMagic)> magic, uint32_t version) {
   ByteWriter out;
-  out.raw(kPvsMagic);
+  out.raw(magic);
   out.number(version);
   out.number(uint32_t(0));
   return out.bytes();
@@ -221,6 +221,22 @@ Bytes writeSection(uint32_t kind, std::span<const uint8_t> payload) {
   out.raw(payload);
   out.number(uint64_t(XXH3_64bits(out.bytes().data(), out.bytes().size())));
   return out.bytes();
+}
+
+Section readSection(std::span<const uint8_t> bytes, uint64_t offset) {
+  ByteReader in(bytes.subspan(size_t(offset)));
+  Section section{in.number<uint32_t>(), {}, offset, 0};
+  const auto reserved = in.number<uint32_t>();
+  const auto size = in.number<uint64_t>();
+  if (in.failed()) throw Damage("cut off in the head of a section");
+  section.payload = in.raw(size);
+  const auto checksum = in.number<uint64_t>();
+  if (in.failed()) throw Damage("cut off in a section");
+  section.end = offset + kSectionHeadBytes + size + kSectionChecksumBytes;
+  if (checksum != XXH3_64bits(bytes.data() + offset, kSectionHeadBytes + size) || reserved != 0) {
+    throw Damage("a section whose checksum is wrong");
+  }
+  return section;
 }
 
 Bytes writeHeadPayload(const PvsFile& pvs) {

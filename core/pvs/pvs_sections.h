@@ -41,6 +41,17 @@ class Damage : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A part of a file.
+struct Section {
+  uint32_t kind = 0;
+  std::span<const uint8_t> payload;
+  uint64_t offset = 0;  ///< of its first byte in the file
+  uint64_t end = 0;     ///< of the byte after it
+};
+
+/// Throws Damage if the file's bytes have no sound section at `offset`, which is not beyond their end.
+Section readSection(std::span<const uint8_t> bytes, uint64_t offset);
+
 /// A cell and its index among the planned ones.
 struct IndexedCell {
   uint32_t index = 0;
@@ -61,7 +72,7 @@ CellCost costOf(const CellPvs& cell, uint32_t index);
 void setCost(CellPvs& cell, const CellCost& cost);
 
 /// Magic, version, 0.
-Bytes writePrelude(uint32_t version);
+Bytes writePrelude(std::span<const uint8_t, sizeof(kPvsMagic)> magic, uint32_t version);
 /// Kind, size, payload and checksum.
 Bytes writeSection(uint32_t kind, std::span<const uint8_t> payload);
 

@@ -63,7 +63,7 @@ void PvsWriter::begin(const PvsFile& head) {
   setHead(head);
   size_ = 0;
   costs_ = {};
-  write(writePrelude(versionOf(head)));
+  write(writePrelude(kPvsMagic, versionOf(head)));
   write(writeSection(kSectionHead, writeHeadPayload(head)));
   places_ = {{0, size_}};
 }

@@ -11,7 +11,7 @@ void writePvs(const PvsFile& pvs, const std::function<void(const Bytes&)>& put) 
     put(bytes);
     checksum.add(bytes);
   };
-  write(writePrelude(versionOf(pvs)));
+  write(writePrelude(kPvsMagic, versionOf(pvs)));
   write(writeSection(kSectionHead, writeHeadPayload(pvs)));
   ByteWriter costs;
   for (uint32_t index = 0; index < pvs.cells.size(); ++index) {

@@ -22,16 +22,6 @@ Share shareOfWords(const std::array<uint64_t, 8>& words, const glm::ivec3& low, 
   return (all & square) == square ? Share::kAll : (any & square) == 0 ? Share::kNone : Share::kSome;
 }
 
-PackedBlock::Brick brickOf(const BlockBits& block, int bx, int by, int bz) {
-  PackedBlock::Brick brick{};
-  for (int z = 0; z < 8; ++z) {
-    for (int y = 0; y < 8; ++y) {
-      brick[size_t(z)] |= ((block.row(8 * by + y, 8 * bz + z) >> (8 * bx)) & 0xff) << (8 * y);
-    }
-  }
-  return brick;
-}
-
 }  // namespace
 
 Share PackedBlock::shareOf(const glm::ivec3& low, int level) const {
@@ -45,9 +35,7 @@ Share PackedBlock::shareOf(const glm::ivec3& low, int level) const {
   const int bit = brick.x + 8 * brick.y;
   if (((all[size_t(brick.z)] >> bit) & 1) != 0) return Share::kAll;
   if (((some[size_t(brick.z)] >> bit) & 1) == 0) return Share::kNone;
-  size_t rank = size_t(std::popcount(some[size_t(brick.z)] & ((uint64_t{1} << bit) - 1)));
-  for (int z = 0; z < brick.z; ++z) rank += size_t(std::popcount(some[size_t(z)]));
-  return shareOfWords(bits[rank], low & 7, 1 << level);
+  return shareOfWords(bits[placeOfBits(some.data(), brick)], low & 7, 1 << level);
 }
 
 uint64_t PackedBlock::count() const {
@@ -68,12 +56,7 @@ void PackedBlock::addTo(BlockBits& block) const {
         const uint64_t bit = uint64_t{1} << (bx + 8 * by);
         if ((all[size_t(bz)] & bit) != 0) whole |= uint64_t{0xff} << (8 * bx);
         if ((some[size_t(bz)] & bit) == 0) continue;
-        const Brick& brick = bits[next++];
-        for (int z = 0; z < 8; ++z) {
-          for (int y = 0; y < 8; ++y) {
-            block.row(8 * by + y, 8 * bz + z) |= ((brick[size_t(z)] >> (8 * y)) & 0xff) << (8 * bx);
-          }
-        }
+        block.insert({bx, by, bz}, bits[next++]);
       }
       if (whole == 0) continue;
       for (int z = 0; z < 8; ++z) {
@@ -100,7 +83,7 @@ PackedBlock packBlock(const BlockBits& block) {
           result.all[size_t(bz)] |= bit;
         } else if (((any >> (8 * bx)) & 0xff) != 0) {
           result.some[size_t(bz)] |= bit;
-          result.bits.push_back(brickOf(block, bx, by, bz));
+          result.bits.push_back(block.brick({bx, by, bz}));
         }
       }
     }

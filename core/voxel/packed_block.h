@@ -27,6 +27,14 @@ struct PackedBlock {
   void addTo(BlockBits& block) const;
 };
 
+/// Where the bits of a brick of `some` are in PackedBlock::bits.
+inline size_t placeOfBits(const uint64_t* some, const glm::ivec3& brick) {
+  const int bit = brick.x + 8 * brick.y;
+  size_t place = size_t(std::popcount(some[brick.z] & ((uint64_t{1} << bit) - 1)));
+  for (int z = 0; z < brick.z; ++z) place += size_t(std::popcount(some[z]));
+  return place;
+}
+
 PackedBlock packBlock(const BlockBits& block);
 
 }  // namespace sightline

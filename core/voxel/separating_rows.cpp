@@ -45,7 +45,7 @@ bool missesBox(const VoxelHalf& half, const PlaceBox& box) {
 }  // namespace
 
 SeparatingRows::SeparatingRows(const std::array<glm::dvec3, 3>& corners, Separation separation)
-    : corners_(corners), separation_(separation), box_(TriangleRows(corners).box()) {}
+    : corners_(corners), separation_(separation), box_(voxelsAround(corners)) {}
 
 void SeparatingRows::prepare() {
   is_ready_ = true;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 
+#include "bvh/clip_polygon.h"
 #include "core/scene/object_of.h"
 #include "core/voxel/bin_triangles.h"
 #include "core/voxel/triangle_rows.h"
@@ -28,16 +29,8 @@ struct Polygon {
 // The part where sign * (p[axis] - at) >= 0.
 Polygon cutBy(const Polygon& polygon, int axis, double at, double sign) {
   Polygon part;
-  for (int i = 0; i < polygon.count; ++i) {
-    const glm::dvec3 &p = polygon.corners[size_t(i)], &q = polygon.corners[size_t((i + 1) % polygon.count)];
-    const double from = sign * (p[axis] - at), to = sign * (q[axis] - at);
-    if (from >= 0) part.add(p);
-    if ((from > 0 && to < 0) || (from < 0 && to > 0)) {
-      glm::dvec3 crossing = p + (q - p) * (from / (from - to));
-      crossing[axis] = at;
-      part.add(crossing);
-    }
-  }
+  clipPolygon(polygon.corners.data(), size_t(polygon.count), axis, at, sign,
+              [&](const glm::dvec3& corner) { part.add(corner); });
   return part;
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstring>
-#include <fstream>
 #include <optional>
 
 #include "core/base/error.h"
@@ -195,42 +194,6 @@ void readTriangles(std::span<const uint8_t> payload, std::span<VoxelBlock> block
   if (at != raw->size()) throw Damage("more ids than blocks");
 }
 
-// The parts of a file, one after the other, each with its checksum looked at.
-class Sections {
- public:
-  explicit Sections(std::span<const uint8_t> bytes) : bytes_(bytes) {}
-  size_t at() const { return at_; }
-  bool atEnd() const { return at_ == bytes_.size(); }
-
-  std::span<const uint8_t> next(uint32_t& kind) {
-    ByteReader in(bytes_.subspan(at_));
-    kind = in.number<uint32_t>();
-    in.number<uint32_t>();
-    const uint64_t size = in.number<uint64_t>();
-    const auto payload = in.raw(size);
-    const uint64_t checksum = in.number<uint64_t>();
-    if (in.failed()) throw Damage("the file is cut off here");
-    const size_t hashed = kSectionHeadBytes + payload.size();
-    if (XXH3_64bits(bytes_.data() + at_, hashed) != checksum)
-      throw Damage("a section whose checksum is wrong");
-    at_ += hashed + kSectionChecksumBytes;
-    return payload;
-  }
-  void skip(size_t bytes) { at_ += bytes; }
-
- private:
-  std::span<const uint8_t> bytes_;
-  size_t at_ = 0;
-};
-
-Bytes prelude() {
-  ByteWriter out;
-  out.raw(kVoxelMagic);
-  out.number(kVoxelVersion);
-  out.number(uint32_t(0));
-  return out.bytes();
-}
-
 void checkPrelude(std::span<const uint8_t> bytes) {
   ByteReader in(bytes);
   const auto magic = in.raw(sizeof(kVoxelMagic));
@@ -259,39 +222,45 @@ void addBlocks(VoxelFile& file, uint32_t level, std::vector<VoxelBlock>&& blocks
   std::ranges::move(blocks, std::back_inserter(all));
 }
 
-VoxelFile parse(std::span<const uint8_t> bytes, Sections& sections) {
+// at: how far it has come, for who says what is wrong.
+VoxelFile parse(std::span<const uint8_t> bytes, uint64_t& at) {
   checkPrelude(bytes);
-  sections.skip(kPvsPreludeBytes);
+  at = kPvsPreludeBytes;
+  const auto next = [&] {
+    const Section section = readSection(bytes, at);
+    at = section.end;
+    return section;
+  };
   VoxelFile file;
-  uint32_t kind = 0, chunks = 0;
-  const auto head = sections.next(kind);
-  if (kind != kSectionHead) throw Damage("the head is missing");
-  file.head = readHead(head);
+  uint32_t chunks = 0;
+  const Section head = next();
+  if (head.kind != kSectionHead) throw Damage("the head is missing");
+  file.head = readHead(head.payload);
   while (true) {
-    const size_t before = sections.at();
-    ByteReader in(sections.next(kind));
-    if (kind == kSectionEnd) {
+    const Section section = next();
+    ByteReader in(section.payload);
+    if (section.kind == kSectionEnd) {
       const uint32_t count = in.number<uint32_t>();
       const uint64_t checksum = in.number<uint64_t>();
-      if (!in.finished() || count != chunks || checksum != XXH3_64bits(bytes.data(), before)) {
+      if (!in.finished() || count != chunks || checksum != XXH3_64bits(bytes.data(), section.offset)) {
         throw Damage("the end does not fit the file");
       }
-      if (!sections.atEnd()) throw Damage("bytes after the end");
+      if (at != bytes.size()) throw Damage("bytes after the end");
       return file;
     }
     const uint32_t level = in.number<uint32_t>(), count = in.number<uint32_t>();
-    if (kind != kSectionBlocks || in.failed() || count == 0 || count > kBlocksAChunk)
+    if (section.kind != kSectionBlocks || in.failed() || count == 0 || count > kBlocksAChunk)
       throw Damage("a section of an unknown kind");
     std::vector<VoxelBlock> blocks = readBlocks(in, count);
     if (level == 0 && file.head.has_triangles) {
-      const auto triangles = sections.next(kind);
-      if (kind != kSectionTriangles) throw Damage("blocks without their ids");
-      readTriangles(triangles, blocks, file.head.triangle_count);
+      const Section triangles = next();
+      if (triangles.kind != kSectionTriangles) throw Damage("blocks without their ids");
+      readTriangles(triangles.payload, blocks, file.head.triangle_count);
     }
     if (level == 0 && (file.head.has_normals || file.head.has_objects)) {
-      const auto attributes = sections.next(kind);
-      if (kind != kSectionAttributes) throw Damage("blocks without their attributes");
-      readAttributes(file.head, attributes, blocks);
+      const Section attributes = next();
+      if (attributes.kind != kSectionAttributes) throw Damage("blocks without their attributes");
+      readAttributes(file.head, attributes.payload, blocks);
     }
     addBlocks(file, level, std::move(blocks));
     ++chunks;
@@ -317,7 +286,7 @@ VoxelWriter::VoxelWriter(const std::filesystem::path& file, const VoxelHead& hea
       [this](VoxelBlock&& block) { coarse_.front().blocks.push_back(std::move(block)); });
   coarse_.push_back({.lattice = {head.lattice.exponent + 1}, .blocks = {}});
   counts_.resize(1);
-  put(prelude());
+  put(writePrelude(kVoxelMagic, kVoxelVersion));
   put(writeSection(kSectionHead, headPayload(head)));
 }
 
@@ -383,11 +352,11 @@ std::vector<VoxelLevelCounts> VoxelWriter::finish() {
 }
 
 VoxelFile parseVoxels(std::span<const uint8_t> bytes, const std::filesystem::path& file) {
-  Sections sections(bytes);
+  uint64_t at = 0;
   try {
-    return parse(bytes, sections);
+    return parse(bytes, at);
   } catch (const Damage& damage) {
-    throw Error(fmt::format("{}: byte {}: {}", file.string(), sections.at(), damage.what()));
+    throw Error(fmt::format("{}: byte {}: {}", file.string(), at, damage.what()));
   }
 }
 
@@ -397,18 +366,12 @@ VoxelFile loadVoxels(const std::filesystem::path& file) {
 }
 
 bool isVoxelFile(const std::filesystem::path& file) {
-  char start[sizeof(kVoxelMagic)] = {};
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(file, ignored))
-    std::ifstream(file, std::ios::binary).read(start, sizeof(start));
-  return std::memcmp(start, kVoxelMagic, sizeof(start)) == 0 || lowerExtension(file) == ".slv";
+  return beginsWith(file, kVoxelMagic) || lowerExtension(file) == ".slv";
 }
 
-void requireScene(const VoxelHead& head, const Scene& scene, const std::filesystem::path& file) {
-  if (head.scene_hash == hashScene(scene)) return;
-  throw Error(
-      fmt::format("{}: voxels of another scene ({} triangles; this one has {}): make them anew with voxels",
-                  file.string(), head.triangle_count, scene.triangleCount()));
+void requireScene(const VoxelHead& head, uint64_t scene_hash, const std::filesystem::path& file) {
+  if (head.scene_hash == scene_hash) return;
+  throw Error(file.string() + ": has voxels of another scene, or of another state of it", kExitUsage);
 }
 
 }  // namespace sightline

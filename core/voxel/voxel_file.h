@@ -81,7 +81,7 @@ VoxelFile parseVoxels(std::span<const uint8_t> bytes, const std::filesystem::pat
 /// Whether a file begins as voxel files do, or has their extension.
 bool isVoxelFile(const std::filesystem::path& file);
 
-/// Throws Error if the voxels are not of the scene.
-void requireScene(const VoxelHead& head, const Scene& scene, const std::filesystem::path& file);
+/// Throws Error (exit code 2) if the voxels are not of the scene with this hash.
+void requireScene(const VoxelHead& head, uint64_t scene_hash, const std::filesystem::path& file);
 
 }  // namespace sightline

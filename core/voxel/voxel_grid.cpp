@@ -77,14 +77,7 @@ std::vector<VoxelBrick> BlockBits::bricks() const {
       }
       for (int bx = 0; any != 0 && bx < 8; ++bx) {
         if (((any >> (8 * bx)) & 0xff) == 0) continue;
-        VoxelBrick brick;
-        brick.place = uint16_t(bx + 8 * by + 64 * bz);
-        for (int z = 0; z < 8; ++z) {
-          for (int y = 0; y < 8; ++y) {
-            brick.bits[size_t(z)] |= ((row(8 * by + y, 8 * bz + z) >> (8 * bx)) & 0xff) << (8 * y);
-          }
-        }
-        result.push_back(brick);
+        result.push_back({uint16_t(bx + 8 * by + 64 * bz), brick({bx, by, bz})});
       }
     }
   }
@@ -93,11 +86,24 @@ std::vector<VoxelBrick> BlockBits::bricks() const {
 
 void BlockBits::insert(std::span<const VoxelBrick> bricks) {
   for (const VoxelBrick& brick : bricks) {
-    const int bx = brick.place & 7, by = (brick.place >> 3) & 7, bz = brick.place >> 6;
-    for (int z = 0; z < 8; ++z) {
-      for (int y = 0; y < 8; ++y) {
-        row(8 * by + y, 8 * bz + z) |= ((brick.bits[size_t(z)] >> (8 * y)) & 0xff) << (8 * bx);
-      }
+    insert({brick.place & 7, (brick.place >> 3) & 7, brick.place >> 6}, brick.bits);
+  }
+}
+
+std::array<uint64_t, 8> BlockBits::brick(const glm::ivec3& place) const {
+  std::array<uint64_t, 8> bits{};
+  for (int z = 0; z < 8; ++z) {
+    for (int y = 0; y < 8; ++y) {
+      bits[size_t(z)] |= ((row(8 * place.y + y, 8 * place.z + z) >> (8 * place.x)) & 0xff) << (8 * y);
+    }
+  }
+  return bits;
+}
+
+void BlockBits::insert(const glm::ivec3& place, const std::array<uint64_t, 8>& bits) {
+  for (int z = 0; z < 8; ++z) {
+    for (int y = 0; y < 8; ++y) {
+      row(8 * place.y + y, 8 * place.z + z) |= ((bits[size_t(z)] >> (8 * y)) & 0xff) << (8 * place.x);
     }
   }
 }

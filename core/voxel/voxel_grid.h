@@ -95,6 +95,10 @@ class BlockBits {
   std::vector<VoxelBrick> bricks() const;
   /// Adds those of the bricks.
   void insert(std::span<const VoxelBrick> bricks);
+  /// Bits of a brick, as VoxelBrick has them, by its place in the block along each axis.
+  std::array<uint64_t, 8> brick(const glm::ivec3& place) const;
+  /// Adds these.
+  void insert(const glm::ivec3& place, const std::array<uint64_t, 8>& bits);
 
  private:
   std::vector<uint64_t> words_;

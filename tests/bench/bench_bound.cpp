@@ -28,19 +28,9 @@ double unit(uint64_t& state) {
 bool isFree(const glm::dvec3& from, const glm::dvec3& to, BlockedView& view) {
   const glm::dvec3 way = to - from;
   const double nudge = 0x1p-16 / std::max({std::abs(way.x), std::abs(way.y), std::abs(way.z), 1.0});
-  for (double share = 0; share < 1;) {
-    const glm::ivec3 voxel(glm::floor(from + way * share));
-    const BlockedView::Cube cube = view.cubeAt(voxel);
-    if (cube.blocked) return false;
-    double end = 1;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (way[axis] == 0) continue;
-      const int low = voxel[axis] & -cube.side;
-      end = std::min(end, (double(way[axis] > 0 ? low + cube.side : low) - from[axis]) / way[axis]);
-    }
-    share = std::max(end, share) + nudge;
-  }
-  return true;
+  bool is_free = true;
+  view.visitAlong(from, way, nudge, [&](double, bool blocked) { return is_free = !blocked; });
+  return is_free;
 }
 
 /// How many of the triangles some of so many segments from the cell meet without an opaque voxel on the way:

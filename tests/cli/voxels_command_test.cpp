@@ -28,7 +28,7 @@ TEST(VoxelsCommand, WritesVoxelsOnEveryDeviceAlike) {
   const VoxelFile file = loadVoxels(where + "a.slv");
   const Scene scene = loadScene(where + "p.glb", {});
   EXPECT_EQ(file.levels.front().blocks, voxelize(scene, {.lattice = latticeOf(0.5)}).blocks);
-  requireScene(file.head, scene, where + "a.slv");
+  requireScene(file.head, hashScene(scene), where + "a.slv");
   for (const std::string options :
        {"--separate 6", "--separate 26 --attributes normal,object", "--without-triangles --memory 1"}) {
     for (const std::string device : {"cpu", "opencl"}) {

@@ -175,7 +175,7 @@ struct Sections {
   /// A file that has these after its head.
   Bytes file(std::initializer_list<Bytes> sections, uint32_t cell_count) const {
     ByteWriter out;
-    out.raw(writePrelude(4));
+    out.raw(writePrelude(kPvsMagic, 4));
     out.raw(head);
     for (const Bytes& section : sections) out.raw(section);
     const Bytes& all = out.bytes();

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "core/voxel/voxelize.h"
+#include "tests/voxel/random_numbers.h"
 
 namespace sightline {
 namespace {
@@ -86,36 +87,27 @@ bool meetsTargets(const SeparationTriangle& t, Separation separation, const Sepa
   });
 }
 
-float separationNumber(std::mt19937_64& random, double low, double high) {
-  return float(low + (high - low) * double(random() >> 11) * 0x1p-53);
-}
-
-float separationWhole(std::mt19937_64& random, int low, int high) {
-  return float(low + int(random() % uint64_t(high - low + 1)));
-}
-
 // Kinds that make ties: corners on the lattice's corners, edges, faces and centres, and next to them.
 SeparationTriangle tiedTriangle(std::mt19937_64& random) {
   const uint64_t kind = random() % 8;
   std::array<glm::vec3, 3> t;
   for (glm::vec3& p : t) {
     for (int axis = 0; axis < 3; ++axis) {
-      const float on_lattice = separationWhole(random, -3, 3),
-                  on_middles = separationWhole(random, -5, 5) / 2;
-      const float anywhere = separationNumber(random, -3, 3), step = separationWhole(random, -1, 1);
+      const float on_lattice = whole(random, -3, 3), on_middles = whole(random, -5, 5) / 2;
+      const float anywhere = number(random, -3, 3), step = whole(random, -1, 1);
       p[axis] = kind == 0   ? on_lattice
                 : kind == 1 ? on_middles
                 : kind == 2 ? anywhere
                 : kind == 3 ? on_middles + step * 0x1p-22f
                 : kind == 4 ? (axis == int(random() % 3) ? step * 0x1p-60f : on_lattice)
                 : kind == 5 ? (axis == 1 ? step / 2 : anywhere)
-                : kind == 6 ? separationNumber(random, -0.8, 0.8)
+                : kind == 6 ? number(random, -0.8, 0.8)
                             : anywhere;
     }
   }
   if (kind == 7) {
-    const float share = separationNumber(random, 0, 1);
-    t[2] = t[0] + (t[1] - t[0]) * share + glm::vec3(separationWhole(random, -1, 1) * 0x1p-18f);
+    const float share = number(random, 0, 1);
+    t[2] = t[0] + (t[1] - t[0]) * share + glm::vec3(whole(random, -1, 1) * 0x1p-18f);
   }
   return {glm::dvec3(t[0]), glm::dvec3(t[1]), glm::dvec3(t[2])};
 }
@@ -194,7 +186,7 @@ TEST(SeparatingRows, DependOnTheSurfaceNotOnHowItIsCut) {
   for (int i = 0; i < 300; ++i) {
     SeparationTriangle t;
     for (glm::dvec3& p : t) {
-      for (int axis = 0; axis < 3; ++axis) p[axis] = separationWhole(random, -8, 8) / 2;
+      for (int axis = 0; axis < 3; ++axis) p[axis] = whole(random, -8, 8) / 2;
     }
     std::vector<SeparationTriangle> parts;
     cutRandomly(t, 4, random, parts);
@@ -242,13 +234,13 @@ TEST(SeparatingRows, LetNoPathThroughAClosedSurface) {
   for (int i = 0; i < 12; ++i) {
     // On corners of the lattice, on middles too, anywhere.
     const double steps_a_voxel = i % 3 == 0 ? 1 : i % 3 == 1 ? 2 : 1 << 20;
-    const double radius = separationNumber(random, 3, 5);
+    const double radius = number(random, 3, 5);
     std::map<std::array<double, 3>, glm::dvec3> placed;
     const auto mesh = closedMesh([&](const glm::dvec3& corner) {
       const auto [found, is_new] = placed.emplace(std::array{corner.x, corner.y, corner.z}, glm::dvec3(0));
       if (is_new) {
         for (int axis = 0; axis < 3; ++axis) {
-          const double anywhere = glm::normalize(corner)[axis] * radius + separationNumber(random, -0.9, 0.9);
+          const double anywhere = glm::normalize(corner)[axis] * radius + number(random, -0.9, 0.9);
           found->second[axis] = std::round(anywhere * steps_a_voxel) / steps_a_voxel;
         }
       }
@@ -298,8 +290,8 @@ TEST(SeparatingRows, FollowThePlaneLaw) {
   for (int i = 0; i < 20; ++i) {
     glm::dvec3 u, v;
     for (int axis = 0; axis < 3; ++axis) {
-      u[axis] = separationNumber(random, -1, 1);
-      v[axis] = separationNumber(random, -1, 1);
+      u[axis] = number(random, -1, 1);
+      v[axis] = number(random, -1, 1);
     }
     u = glm::normalize(u);
     v = glm::normalize(v - u * glm::dot(u, v));
@@ -320,11 +312,11 @@ TEST(Voxelize, SeparatesAsItsTrianglesDo) {
   std::vector<SeparationTriangle> triangles;
   for (uint32_t i = 0; i < 150; ++i) {
     glm::vec3 middle(0);
-    for (int axis = 0; axis < 3; ++axis) middle[axis] = separationNumber(random, -40, 40);
+    for (int axis = 0; axis < 3; ++axis) middle[axis] = number(random, -40, 40);
     const float size = i % 10 == 0 ? 40 : 2;
     for (int corner = 0; corner < 3; ++corner) {
       glm::vec3 step(0);
-      for (int axis = 0; axis < 3; ++axis) step[axis] = separationNumber(random, -size, size);
+      for (int axis = 0; axis < 3; ++axis) step[axis] = number(random, -size, size);
       scene.positions.push_back(middle + step);
     }
     scene.triangles.emplace_back(3 * i, 3 * i + 1, 3 * i + 2);

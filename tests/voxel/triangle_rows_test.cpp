@@ -12,6 +12,8 @@
 #include <random>
 #include <set>
 
+#include "tests/voxel/random_numbers.h"
+
 namespace sightline {
 namespace {
 
@@ -30,14 +32,6 @@ bool meetsExactly(const TestTriangle& t, const glm::ivec3& voxel) {
       return true;
   }
   return false;
-}
-
-float number(std::mt19937_64& random, double low, double high) {
-  return float(low + (high - low) * double(random() >> 11) * 0x1p-53);
-}
-
-float whole(std::mt19937_64& random, int low, int high) {
-  return float(low + int(random() % uint64_t(high - low + 1)));
 }
 
 // A triangle of one of the kinds that break tests of triangles and boxes; float coordinates, as scenes have
